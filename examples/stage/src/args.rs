@@ -1,0 +1,109 @@
+//! The three options of the small examples, by hand: they should not need more than Bevy.
+
+use std::{ffi::OsString, path::PathBuf};
+
+use bevy::math::UVec2;
+use thiserror::Error;
+
+use crate::{
+    plugins::StagePlugins,
+    stage::{MAX_SIDE, is_valid_size},
+};
+
+const USAGE: &str = "\
+Options:
+  --out FILE.png   render without a window and write a picture
+  --size WxH       size of the window or picture in pixels
+  --frames N       frames to simulate before the picture is taken
+  --help           print this";
+
+/// Why the command line was not understood.
+#[derive(Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ArgumentError {
+    /// `--help` was asked for: not an error, but not a run either.
+    #[error("{USAGE}")]
+    Help,
+    /// An option or a stray word that is not known.
+    #[error("unknown option `{0}` (see --help)")]
+    Unknown(String),
+    /// An option that is the last word.
+    #[error("option `{0}` needs a value")]
+    MissingValue(&'static str),
+    /// A size that is not two whole numbers with an `x` between, or out of range.
+    #[error("option `--size`: `{0}` is not WIDTHxHEIGHT with sides of 1 to {MAX_SIDE} pixels")]
+    Size(String),
+    /// A number of frames that is not a whole number.
+    #[error("option `--frames`: `{0}` is not a whole number")]
+    Frames(String),
+    /// A picture in a format that the stage does not write.
+    #[error("option `--out`: `{0}` does not end in .png")]
+    NotPng(String),
+}
+
+impl StagePlugins {
+    /// The default stage changed by this program's options; ends the program on a bad option
+    /// (one line on stderr, exit code 2) and on `--help`.
+    pub fn from_args() -> Self {
+        Self::default().with_args()
+    }
+
+    /// This stage changed by this program's options; ends the program as
+    /// [`from_args`](Self::from_args) does.
+    pub fn with_args(self) -> Self {
+        match self.parse(std::env::args_os().skip(1)) {
+            Ok(stage) => stage,
+            Err(help @ ArgumentError::Help) => {
+                println!("{help}");
+                std::process::exit(0);
+            }
+            Err(error) => {
+                eprintln!("{error}");
+                std::process::exit(2);
+            }
+        }
+    }
+
+    /// This stage changed by `--out FILE.png`, `--size WxH` and `--frames N`, the program's name
+    /// left out.
+    pub fn parse(
+        mut self,
+        args: impl IntoIterator<Item = OsString>,
+    ) -> Result<Self, ArgumentError> {
+        let mut args = args.into_iter();
+        while let Some(option) = args.next() {
+            let mut value = |name| args.next().ok_or(ArgumentError::MissingValue(name));
+            match option.to_str() {
+                Some("--help" | "-h") => return Err(ArgumentError::Help),
+                Some("--out") => self.out = Some(png(value("--out")?)?),
+                Some("--size") => self.size = size(&text(value("--size")?))?,
+                Some("--frames") => self.frames = frames(&text(value("--frames")?))?,
+                _ => return Err(ArgumentError::Unknown(text(option))),
+            }
+        }
+        Ok(self)
+    }
+}
+
+fn text(word: OsString) -> String {
+    word.to_string_lossy().into_owned()
+}
+
+fn png(word: OsString) -> Result<PathBuf, ArgumentError> {
+    let path = PathBuf::from(word);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(path),
+        _ => Err(ArgumentError::NotPng(path.display().to_string())),
+    }
+}
+
+fn size(word: &str) -> Result<UVec2, ArgumentError> {
+    word.split_once('x')
+        .and_then(|(width, height)| Some(UVec2::new(width.parse().ok()?, height.parse().ok()?)))
+        .filter(|size| is_valid_size(*size))
+        .ok_or_else(|| ArgumentError::Size(word.into()))
+}
+
+fn frames(word: &str) -> Result<u32, ArgumentError> {
+    word.parse().map_err(|_| ArgumentError::Frames(word.into()))
+}

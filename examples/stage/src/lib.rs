@@ -1,0 +1,40 @@
+//! The stage on which the examples, tests and benches of `bevy_fluid` play.
+//!
+//! - [`StagePlugins`] stands in for `DefaultPlugins`: a window, or a picture written without one.
+//! - [`headless_app`] with [`settle`], [`step`], [`capture`] and [`read_texture`] is for tests and
+//!   benches: frame by frame, and what the GPU holds afterwards.
+//! - [`scenery`] is what stands around the liquid: floor, pillars, sky, sun, tank and camera.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use fluid_stage::StagePlugins;
+//!
+//! fn main() -> AppExit {
+//!     App::new()
+//!         .add_plugins(StagePlugins::from_args())
+//!         .run()
+//! }
+//! ```
+
+mod adapter;
+mod args;
+mod error;
+mod headless;
+mod picture;
+mod pipelines;
+mod plugins;
+mod read;
+pub mod scenery;
+mod stage;
+mod timing;
+
+pub use args::ArgumentError;
+pub use error::StageError;
+pub use headless::{
+    adapter_name, capture, headless_app, resize, set_time_step, settle, step, validation_errors,
+};
+pub use picture::PendingPicture;
+pub use plugins::{StagePlugins, VIEW_SIZE};
+pub use read::{TextureData, read_buffer, read_subresource, read_texture};
+pub use stage::Stage;
+pub use timing::{gpu_spans, median_gpu_ms};

@@ -1,0 +1,152 @@
+//! `DefaultPlugins` for a window, or the same plugins without one.
+
+use std::{
+    path::PathBuf,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
+
+use bevy::{
+    app::{PluginGroupBuilder, TerminalCtrlCHandlerPlugin},
+    log::{Level, LogPlugin},
+    prelude::*,
+    render::{
+        RenderPlugin, diagnostic::RenderDiagnosticsPlugin,
+        pipelined_rendering::PipelinedRenderingPlugin,
+    },
+    time::TimeUpdateStrategy,
+    window::ExitCondition,
+    winit::WinitPlugin,
+};
+use bevy_panorbit_camera::PanOrbitCameraPlugin;
+
+use crate::{
+    StageError,
+    adapter::require_adapter,
+    picture::PicturePlugin,
+    stage::{Stage, StagePlugin, is_valid_size},
+};
+
+/// The size of windows and pictures where none is asked for, in pixels.
+pub const VIEW_SIZE: UVec2 = UVec2::new(1280, 720);
+
+/// Stands in for `DefaultPlugins`: with a window, or, where a picture is asked for, without.
+///
+/// Ends the program with one line on stderr and exit code 2 where nothing can be shown: no adapter,
+/// no display, an impossible size. Without a window `App::run` renders until every pipeline is
+/// compiled (with the clock stopped), then steps `frames` frames of `time_step` each, writes the
+/// picture and returns; pass its `AppExit` on from `main`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StagePlugins {
+    /// Where to write the picture (PNG), or `None` for a window.
+    pub out: Option<PathBuf>,
+    /// Size of the window or picture in pixels. Default: [`VIEW_SIZE`].
+    pub size: UVec2,
+    /// Frames before the picture is taken; 0 shows the start. Default: 60. Unused in a window.
+    pub frames: u32,
+    /// Unit: time a frame. How far the clock moves from frame to frame of a picture, however long
+    /// rendering takes. Default: 1/60 s. Unused in a window.
+    pub time_step: Duration,
+    /// Title of the window.
+    pub title: String,
+}
+
+impl Default for StagePlugins {
+    fn default() -> Self {
+        Self {
+            out: None,
+            size: VIEW_SIZE,
+            frames: 60,
+            time_step: Duration::from_secs_f64(1.0 / 60.0),
+            title: "bevy_fluid".into(),
+        }
+    }
+}
+
+impl PluginGroup for StagePlugins {
+    fn build(self) -> PluginGroupBuilder {
+        let wants_window = self.out.is_none();
+        let group = match self.out.clone() {
+            _ if wants_window && !Stage::has_display() => Err(StageError::NoDisplay),
+            Some(out) => headless(self.size).map(|group| {
+                group.add(PicturePlugin {
+                    out,
+                    frames: self.frames,
+                    time_step: self.time_step,
+                })
+            }),
+            None => windowed(self.size, self.title),
+        };
+        group.unwrap_or_else(|error| {
+            eprintln!("{error}");
+            std::process::exit(error.exit_code().into())
+        })
+    }
+}
+
+fn check(size: UVec2) -> Result<(), StageError> {
+    if !is_valid_size(size) {
+        return Err(StageError::Size(size));
+    }
+    require_adapter()
+}
+
+fn windowed(size: UVec2, title: String) -> Result<PluginGroupBuilder, StageError> {
+    check(size)?;
+    let window = Window {
+        title,
+        resolution: size.into(),
+        ..default()
+    };
+    Ok(DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: Some(window),
+            ..default()
+        })
+        .add(PanOrbitCameraPlugin))
+}
+
+/// The plugins of a stage without a window; its clock stands still until a
+/// [`TimeUpdateStrategy`] moves it.
+pub(crate) fn headless(size: UVec2) -> Result<PluginGroupBuilder, StageError> {
+    check(size)?;
+    let group = DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: None,
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        })
+        .set(RenderPlugin {
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        .set(LogPlugin {
+            level: Level::WARN,
+            // The renderer would warn on every start that software rendering is slow.
+            filter: "wgpu=error,naga=warn,bevy_render::renderer=error".into(),
+            ..default()
+        })
+        .disable::<WinitPlugin>()
+        // Pictures and measurements are of the frame just simulated, not of the one before it.
+        .disable::<PipelinedRenderingPlugin>()
+        // Without an event loop nobody answers it: the shell's own Ctrl-C ends the program at once.
+        .disable::<TerminalCtrlCHandlerPlugin>()
+        .add(RenderDiagnosticsPlugin)
+        .add(ClockPlugin)
+        .add(StagePlugin { size });
+    // The log belongs to the process, and tests build many apps in one.
+    static LOG_IS_UP: AtomicBool = AtomicBool::new(false);
+    Ok(if LOG_IS_UP.swap(true, Ordering::Relaxed) {
+        group.disable::<LogPlugin>()
+    } else {
+        group
+    })
+}
+
+struct ClockPlugin;
+
+impl Plugin for ClockPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    }
+}

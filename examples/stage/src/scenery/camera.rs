@@ -1,0 +1,47 @@
+//! Where to look from.
+
+use bevy::{math::bounding::Aabb3d, prelude::*};
+use bevy_panorbit_camera::PanOrbitCamera;
+
+/// From the box towards the eye: from the right and a little above.
+const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.42, 1.0);
+/// How much larger than the box the framed part is.
+const MARGIN: f32 = 1.15;
+
+/// A camera at `eye` that looks at `target`; in a window the mouse turns it around the target.
+pub fn orbit_camera(eye: Vec3, target: Vec3) -> impl Bundle {
+    (
+        Camera3d::default(),
+        Transform::from_translation(eye).looking_at(target, Vec3::Y),
+        // Without a window there is no plugin to move it, and it is only data.
+        PanOrbitCamera {
+            focus: target,
+            ..default()
+        },
+    )
+}
+
+/// The nearest `(eye, target)` in a three-quarter view at which all of `inside` is seen, with a
+/// small margin.
+///
+/// `fov` is the vertical field of view in radians (as in `PerspectiveProjection`), `aspect` the
+/// width over the height of the view.
+pub fn frame_camera(inside: Aabb3d, fov: f32, aspect: f32) -> (Vec3, Vec3) {
+    let (min, max) = (Vec3::from(inside.min), Vec3::from(inside.max));
+    let target = (min + max) / 2.0;
+    let half_size = (max - min) / 2.0 * MARGIN;
+    let view = Transform::default().looking_to(-TOWARDS_EYE, Vec3::Y);
+    let tangent = Vec2::new((fov / 2.0).tan() * aspect, (fov / 2.0).tan());
+
+    let corners = (0..8).map(|corner| {
+        let sign = |axis: i32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        half_size * Vec3::new(sign(0), sign(1), sign(2))
+    });
+    let distance = corners
+        .map(|corner| {
+            let seen = Vec2::new(corner.dot(*view.right()), corner.dot(*view.up())).abs() / tangent;
+            seen.max_element() + corner.dot(*view.back())
+        })
+        .fold(0.0, f32::max);
+    (target + view.back() * distance, target)
+}

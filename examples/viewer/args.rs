@@ -1,0 +1,194 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use bevy_fluid::{
+    Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid,
+    Search, Smoothing,
+};
+use clap::{Parser, ValueEnum, builder::PossibleValuesParser, error::ErrorKind};
+
+/// Draws the particles of a file as a liquid.
+#[derive(Parser, Debug)]
+#[command(name = "viewer")]
+pub struct Args {
+    /// Particles: .vtk, .bgeo, .ply or .xyz (binary f32 triples)
+    pub file: PathBuf,
+    /// Particle radius in the file's units
+    #[arg(long, value_parser = positive)]
+    pub radius: f32,
+    /// Width and height in pixels
+    #[arg(long, default_value = "640x480", value_parser = size)]
+    pub size: UVec2,
+    /// Where the camera stands; chosen from the particles' bounds if not given
+    #[arg(long, value_parser = vector, allow_hyphen_values = true)]
+    pub eye: Option<Vec3>,
+    /// What the camera looks at
+    #[arg(long, value_parser = vector, allow_hyphen_values = true)]
+    pub look_at: Option<Vec3>,
+    /// Vertical field of view in degrees
+    #[arg(long, default_value = "40", value_parser = angle)]
+    pub fov: f32,
+    /// Parallel projection
+    #[arg(long)]
+    pub orthographic: bool,
+    /// How the bulk is smoothed
+    #[arg(long, value_enum, default_value_t = SmoothingArg::PlaneFitSeparable)]
+    pub smoothing: SmoothingArg,
+    /// How many interfaces are refracted
+    #[arg(long, default_value = "4", value_parser = PossibleValuesParser::new(["0", "1", "2", "4"]))]
+    refractions: String,
+    /// How the next interface is found
+    #[arg(long, value_enum, default_value_t = SearchArg::Bracketed)]
+    search: SearchArg,
+    /// How much an interface reflects
+    #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
+    fresnel: FresnelArg,
+    /// Spheres instead of anisotropic kernels
+    #[arg(long)]
+    pub isotropic: bool,
+    /// Show an intermediate result instead of the liquid
+    #[arg(long, value_enum)]
+    debug_view: Option<DebugViewArg>,
+    /// Frames to render; statistics are medians over them
+    #[arg(long, default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+    /// Write a picture (PNG) instead of opening a window
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Write counts and times (JSON)
+    #[arg(long)]
+    pub stats: Option<PathBuf>,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+pub enum SmoothingArg {
+    None,
+    PlaneFitTls,
+    PlaneFit,
+    PlaneFitSeparable,
+    Bilateral,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum SearchArg {
+    Secant,
+    Bracketed,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum FresnelArg {
+    Exact,
+    Schlick,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum DebugViewArg {
+    BulkFront,
+    BulkBack,
+    SprayFront,
+    SprayBack,
+    Normals,
+    Interfaces,
+    Status,
+    Classes,
+}
+
+impl Args {
+    /// Ends the program with one line and exit code 2 where the command line makes no sense.
+    pub fn from_command_line() -> Self {
+        Self::try_parse().unwrap_or_else(|error| {
+            if matches!(
+                error.kind(),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+            ) {
+                error.exit();
+            }
+            // Clap goes on about usage; what is wrong is in its first paragraph.
+            let text = error.to_string();
+            let first = text.split("\n\n").next().unwrap_or(&text);
+            let line = first.split_whitespace().collect::<Vec<_>>().join(" ");
+            eprintln!("{line}");
+            std::process::exit(2);
+        })
+    }
+
+    pub fn settings(&self) -> ScreenSpaceFluid {
+        let plane = |form| {
+            Smoothing::PlaneFit(PlaneFit {
+                form,
+                ..PlaneFit::DEFAULT
+            })
+        };
+        ScreenSpaceFluid {
+            smoothing: match self.smoothing {
+                SmoothingArg::None => Smoothing::None,
+                SmoothingArg::PlaneFitTls => plane(PlaneFitForm::TotalLeastSquares),
+                SmoothingArg::PlaneFit => plane(PlaneFitForm::DeviceDepth),
+                SmoothingArg::PlaneFitSeparable => plane(PlaneFitForm::Separable),
+                SmoothingArg::Bilateral => Smoothing::Bilateral(Bilateral::THESIS),
+            },
+            refractions: match self.refractions.as_str() {
+                "0" => Refractions::Zero,
+                "1" => Refractions::One,
+                "2" => Refractions::Two,
+                _ => Refractions::Four,
+            },
+            search: match self.search {
+                SearchArg::Secant => Search::Secant,
+                SearchArg::Bracketed => Search::BRACKETED,
+            },
+            fresnel: match self.fresnel {
+                FresnelArg::Exact => Fresnel::Exact,
+                FresnelArg::Schlick => Fresnel::Schlick,
+            },
+        }
+    }
+
+    pub fn debug_view(&self) -> Option<FluidDebugView> {
+        Some(match self.debug_view? {
+            DebugViewArg::BulkFront => FluidDebugView::BulkFront,
+            DebugViewArg::BulkBack => FluidDebugView::BulkBack,
+            DebugViewArg::SprayFront => FluidDebugView::SprayFront,
+            DebugViewArg::SprayBack => FluidDebugView::SprayBack,
+            DebugViewArg::Normals => FluidDebugView::Normals,
+            DebugViewArg::Interfaces => FluidDebugView::Interfaces,
+            DebugViewArg::Status => FluidDebugView::Status,
+            DebugViewArg::Classes => FluidDebugView::Classes,
+        })
+    }
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a positive number".into()),
+    }
+}
+
+fn angle(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value > 0.0 && value < 180.0 => Ok(value),
+        _ => Err("must be between 0 and 180 degrees".into()),
+    }
+}
+
+fn size(text: &str) -> Result<UVec2, String> {
+    text.split_once('x')
+        .and_then(|(w, h)| Some(uvec2(w.parse().ok()?, h.parse().ok()?)))
+        .filter(|size| size.min_element() > 0 && size.max_element() <= 8192)
+        .ok_or_else(|| "must be WIDTHxHEIGHT, each from 1 to 8192".into())
+}
+
+fn vector(text: &str) -> Result<Vec3, String> {
+    let parts: Vec<f32> = text
+        .split(',')
+        .map(str::parse)
+        .collect::<Result<_, _>>()
+        .map_err(|_| "must be x,y,z")?;
+    match parts[..] {
+        [x, y, z] if vec3(x, y, z).is_finite() => Ok(vec3(x, y, z)),
+        _ => Err("must be x,y,z".into()),
+    }
+}

@@ -1,0 +1,68 @@
+//! Draws the particles of any file (`.vtk`, `.bgeo`, `.ply`, `.xyz`) as a liquid over a checkered
+//! floor with coloured pillars behind it: in a window, or with `--out FILE.png` as a picture.
+//!
+//! ```text
+//! cargo run --release --example viewer -- FILE --radius 0.025 --out picture.png
+//! ```
+//! Try `--debug-view normals`, `--smoothing none`, `--refractions 1`, `--isotropic`.
+
+mod args;
+mod particles;
+mod scene;
+mod stats;
+
+use std::process::ExitCode;
+
+use anyhow::Context;
+use bevy::prelude::*;
+use fluid_stage::{
+    PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle, step,
+};
+
+use crate::{args::Args, scene::ScenePlugin};
+
+fn main() -> ExitCode {
+    let args = Args::from_command_line();
+    match run(&args) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let positions = particles::read(&args.file)?;
+    let scene = ScenePlugin::new(args, positions);
+    if args.out.is_none() && args.stats.is_none() {
+        let stage = StagePlugins {
+            size: args.size,
+            title: format!("{} · bevy_fluid", args.file.display()),
+            ..default()
+        };
+        let exit = App::new().add_plugins((stage, scene)).run();
+        return Ok(match exit {
+            AppExit::Success => ExitCode::SUCCESS,
+            AppExit::Error(code) => ExitCode::from(code.get()),
+        });
+    }
+    // Before anything is drawn, so that a path that cannot be written to costs nothing.
+    let picture = args.out.as_deref().map(PendingPicture::create).transpose()?;
+    let stats_file = args.stats.as_deref().map(stats::check_writable).transpose()?;
+    let mut app = headless_app(args.size, |app| {
+        app.add_plugins(scene);
+    })?;
+    settle(&mut app)?;
+    set_time_step(&mut app, std::time::Duration::from_secs_f64(1.0 / 60.0));
+    step(&mut app, args.frames);
+    let image = capture(&mut app)?;
+    if let Some(picture) = picture {
+        picture.commit(image)?;
+    }
+    if let Some(path) = stats_file {
+        let stats = stats::gather(&app)?;
+        std::fs::write(path, stats).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

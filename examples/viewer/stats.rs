@@ -1,0 +1,111 @@
+//! Counts and times as JSON.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use bevy::{prelude::*, render::RenderApp};
+use bevy_fluid::{FluidParticles, ShapedFluid, render::ViewBodies};
+use fluid_stage::{Stage, adapter_name, median_gpu_ms, read_texture};
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Stats {
+    particles: usize,
+    dropped: u32,
+    bulk: u32,
+    interior: u32,
+    spray: u32,
+    width: u32,
+    height: u32,
+    fluid_pixels: usize,
+    adapter: String,
+    cpu_ms: CpuTimes,
+    gpu_ms: GpuTimes,
+}
+
+#[derive(Serialize)]
+struct CpuTimes {
+    shape: f64,
+    grid: f64,
+    classify: f64,
+    anisotropy: f64,
+}
+
+/// Medians over the frames; null where the adapter has no timestamps.
+#[derive(Serialize)]
+struct GpuTimes {
+    splat: Option<f64>,
+    smooth: Option<f64>,
+    normals: Option<f64>,
+    refract: Option<f64>,
+    composite: Option<f64>,
+}
+
+/// Complains now rather than after rendering.
+pub fn check_writable(path: &Path) -> anyhow::Result<&Path> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let usable = folder.is_dir() && !path.is_dir() && path.file_name().is_some();
+    usable
+        .then_some(path)
+        .ok_or_else(|| anyhow!("cannot write {}: no such folder", path.display()))
+}
+
+pub fn gather(app: &App) -> anyhow::Result<String> {
+    let (particles, shaped) = app
+        .world()
+        .iter_entities()
+        .find_map(|e| Some((e.get::<FluidParticles>()?, e.get::<ShapedFluid>()?)))
+        .context("there is no fluid")?;
+    let times = shaped.times();
+    let ms = |time: std::time::Duration| 1e3 * time.as_secs_f64();
+    let gpu = |pass: &str| median_gpu_ms(app, &format!("render/fluid_{pass}/elapsed_gpu"));
+    let size = app.world().resource::<Stage>().size;
+    let stats = Stats {
+        particles: particles.positions.len(),
+        dropped: shaped.dropped(),
+        bulk: shaped.bulk(),
+        interior: shaped.interior(),
+        spray: shaped.spray(),
+        width: size.x,
+        height: size.y,
+        fluid_pixels: fluid_pixels(app)?,
+        adapter: adapter_name(app),
+        cpu_ms: CpuTimes {
+            shape: ms(times.total),
+            grid: ms(times.grid),
+            classify: ms(times.classify),
+            anisotropy: ms(times.anisotropy),
+        },
+        gpu_ms: GpuTimes {
+            splat: gpu("splat"),
+            smooth: gpu("smooth"),
+            normals: gpu("normals"),
+            refract: gpu("refract"),
+            composite: gpu("composite"),
+        },
+    };
+    Ok(serde_json::to_string_pretty(&stats)? + "\n")
+}
+
+/// Pixels that show liquid: those whose path is marked as there.
+fn fluid_pixels(app: &App) -> anyhow::Result<usize> {
+    let render = app.sub_app(RenderApp).world();
+    let Some(view) = render
+        .iter_entities()
+        .find_map(|entity| entity.get::<ViewBodies>())
+    else {
+        return Ok(0);
+    };
+    let mut count = 0;
+    for body in &view.bodies {
+        let exits = read_texture(app, body.layers.exits())?;
+        count += exits
+            .texels::<[u32; 4]>()
+            .filter(|[_, _, _, flags]| flags >> 31 == 1)
+            .count();
+    }
+    Ok(count)
+}

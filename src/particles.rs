@@ -1,0 +1,100 @@
+//! Particles as a component, and the system that has them shaped.
+
+use bevy::{prelude::*, utils::once};
+
+use crate::{
+    material::FluidMaterial,
+    schedule::FluidSystems,
+    shape::{FluidSplats, ShapeTimes, ShapeWorkspace, SurfaceKernel},
+};
+
+/// A fluid: particles of one radius in the entity's space.
+///
+/// Changing this component (or the [`SurfaceKernel`] beside it) is the only thing that has the
+/// fluid shaped anew; an unchanged fluid costs nothing.
+#[derive(Component, Clone, Debug, Default, Reflect)]
+#[reflect(Component, Default, Clone)]
+#[require(FluidMaterial, SurfaceKernel, ShapedFluid, Transform, Visibility)]
+pub struct FluidParticles {
+    /// Centres in the entity's space. Unit: m. Particles that are not finite are dropped and
+    /// counted in [`ShapedFluid::dropped`].
+    pub positions: Vec<Vec3>,
+    /// Radius of every particle, half the distance between neighbours at rest. Unit: m, > 0.
+    pub radius: f32,
+}
+
+impl FluidParticles {
+    /// A fluid of particles at `positions`, each of `radius`.
+    pub fn new(positions: Vec<Vec3>, radius: f32) -> Self {
+        Self { positions, radius }
+    }
+}
+
+/// What the shape stage made of a fluid. The splats themselves go to the render world.
+#[derive(Component, Clone, Debug, Default)]
+pub struct ShapedFluid {
+    pub(crate) splats: FluidSplats,
+    fresh: bool,
+    generation: u64,
+}
+
+impl ShapedFluid {
+    /// Number of bulk particles near a surface.
+    pub fn bulk(&self) -> u32 {
+        self.splats.bulk
+    }
+
+    /// Number of bulk particles that no visible surface passes through.
+    pub fn interior(&self) -> u32 {
+        self.splats.interior
+    }
+
+    /// Number of spray particles.
+    pub fn spray(&self) -> u32 {
+        self.splats.spray
+    }
+
+    /// Number of particles left out because their position is not finite.
+    pub fn dropped(&self) -> u32 {
+        self.splats.dropped
+    }
+
+    /// How long the last shaping took.
+    pub fn times(&self) -> ShapeTimes {
+        self.splats.times
+    }
+
+    /// How often the fluid has been shaped.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Whether the splats are new since this was last asked.
+    pub(crate) fn take_fresh(&mut self) -> bool {
+        core::mem::take(&mut self.fresh)
+    }
+}
+
+/// Shapes every fluid whose particles or kernel have changed.
+pub(crate) fn shape_fluids(
+    mut fluids: Query<
+        (Entity, &FluidParticles, &SurfaceKernel, &mut ShapedFluid),
+        Or<(Changed<FluidParticles>, Changed<SurfaceKernel>)>,
+    >,
+    mut workspace: Local<ShapeWorkspace>,
+) {
+    for (entity, particles, kernel, mut shaped) in &mut fluids {
+        let splats = &mut shaped.splats;
+        if let Err(error) = workspace.shape(&particles.positions, particles.radius, kernel, splats)
+        {
+            *splats = FluidSplats::default();
+            once!(warn!("fluid {entity} is not drawn: {error}"));
+        }
+        shaped.fresh = true;
+        shaped.generation += 1;
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(PostUpdate, shape_fluids.in_set(FluidSystems::Shape));
+}

@@ -1,0 +1,188 @@
+//! Bind groups of all passes, once their textures and uniforms are there.
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    prelude::*,
+    render::{
+        render_asset::RenderAssets,
+        render_resource::{BindGroup, BindGroupEntries, PipelineCache, TextureView},
+        renderer::RenderDevice,
+        texture::{FallbackImage, GpuImage},
+        view::ViewUniforms,
+    },
+};
+
+use super::{
+    bindings::common_layout,
+    bodies::{Body, FluidUniforms, ViewBodies},
+    composite::CompositePipeline,
+    extract::GpuSplats,
+    normals::NormalsPipeline,
+    refract::RefractPipeline,
+    scene_copy::Placeholders,
+    smooth::SmoothPipeline,
+    splat::SplatPipeline,
+};
+
+/// The layouts, and what fills them.
+#[derive(bevy::ecs::system::SystemParam)]
+pub(crate) struct Sources<'w> {
+    cache: Res<'w, PipelineCache>,
+    device: Res<'w, RenderDevice>,
+    views: Res<'w, ViewUniforms>,
+    uniforms: Res<'w, FluidUniforms>,
+    splat: Res<'w, SplatPipeline>,
+    smooth: Res<'w, SmoothPipeline>,
+    normals: Res<'w, NormalsPipeline>,
+    refract: Res<'w, RefractPipeline>,
+    composite: Res<'w, CompositePipeline>,
+    placeholders: Res<'w, Placeholders>,
+    images: Res<'w, RenderAssets<GpuImage>>,
+    fallback: Res<'w, FallbackImage>,
+}
+
+pub(crate) fn prepare_splat_bind_groups(mut fluids: Query<&mut GpuSplats>, sources: Sources) {
+    let layout = sources
+        .cache
+        .get_bind_group_layout(&sources.splat.fluid_layout);
+    for mut gpu in &mut fluids {
+        let (Some(buffer), Some(transform)) = (&gpu.buffer, sources.uniforms.fluids.binding())
+        else {
+            continue;
+        };
+        let group = sources.device.create_bind_group(
+            "fluid_splats",
+            &layout,
+            &BindGroupEntries::sequential((buffer.as_entire_binding(), transform)),
+        );
+        gpu.bind_group = Some(group);
+    }
+}
+
+pub(crate) fn prepare_body_bind_groups(
+    mut views: Query<(&mut ViewBodies, &ViewPrepassTextures)>,
+    sources: Sources,
+) {
+    for (mut view, prepass) in &mut views {
+        let Some(scene_depth) = prepass.depth_view() else {
+            continue;
+        };
+        let multisampled = view.multisampled;
+        let scene_color = view
+            .scene_color
+            .as_ref()
+            .map(|copy| copy.default_view.clone());
+        for body in &mut view.bodies {
+            body.groups.common = sources.common(multisampled, scene_depth);
+            body.groups.merge = sources.merge(body);
+            body.groups.smooth = body.steps.bind_groups(
+                &sources.device,
+                &sources.cache,
+                &sources.smooth,
+                &body.layers,
+            );
+            body.groups.bulk_normals = Some(sources.layer(body.layers.bulk_view()));
+            body.groups.spray_normals = Some(sources.layer(&body.layers.spray.default_view));
+            body.groups.refract = Some(sources.refract(body));
+            body.groups.composite = match &scene_color {
+                Some(color) => Some(sources.composite(body, color)),
+                None => sources.debug(body),
+            };
+            body.mark_ready(&sources.cache);
+        }
+    }
+}
+
+impl Sources<'_> {
+    fn common(&self, multisampled: bool, scene_depth: &TextureView) -> Option<BindGroup> {
+        let layout = self
+            .cache
+            .get_bind_group_layout(&common_layout(multisampled));
+        Some(self.device.create_bind_group(
+            "fluid_common",
+            &layout,
+            &BindGroupEntries::sequential((
+                self.views.uniforms.binding()?,
+                self.uniforms.bodies.binding()?,
+                scene_depth,
+            )),
+        ))
+    }
+
+    fn merge(&self, body: &Body) -> Option<BindGroup> {
+        let [front, back] = body.layers.depths.as_ref()?;
+        let layout = self.cache.get_bind_group_layout(&self.splat.merge_layout);
+        Some(self.device.create_bind_group(
+            "fluid_merge",
+            &layout,
+            &BindGroupEntries::sequential((&front.default_view, &back.default_view)),
+        ))
+    }
+
+    fn layer(&self, view: &TextureView) -> BindGroup {
+        self.normals.bind_group(&self.device, &self.cache, view)
+    }
+
+    /// The environment map; white where there is none, which the uniform's intensity of 0 hides.
+    fn environment(&self, body: &Body) -> &GpuImage {
+        body.environment
+            .and_then(|id| self.images.get(id))
+            .unwrap_or(&self.fallback.cube)
+    }
+
+    fn refract(&self, body: &Body) -> BindGroup {
+        let layout = self.cache.get_bind_group_layout(&self.refract.layout);
+        let layers = &body.layers;
+        self.device.create_bind_group(
+            "fluid_refract",
+            &layout,
+            &BindGroupEntries::sequential((
+                &self.environment(body).texture_view,
+                &self.placeholders.sampler,
+                layers.bulk_view(),
+                &layers.bulk_normals.default_view,
+                &layers.spray.default_view,
+                &layers.spray_normals.default_view,
+            )),
+        )
+    }
+
+    fn composite(&self, body: &Body, scene_color: &TextureView) -> BindGroup {
+        let layout = self.cache.get_bind_group_layout(&self.composite.layout);
+        let layers = &body.layers;
+        self.device.create_bind_group(
+            "fluid_composite",
+            &layout,
+            &BindGroupEntries::sequential((
+                &self.environment(body).texture_view,
+                &self.placeholders.sampler,
+                &layers.radiance.default_view,
+                &layers.transmission.default_view,
+                &layers.exits.default_view,
+                layers.bulk_view(),
+                &layers.spray.default_view,
+                scene_color,
+                &self.placeholders.sampler,
+            )),
+        )
+    }
+
+    fn debug(&self, body: &Body) -> Option<BindGroup> {
+        let layout = self
+            .cache
+            .get_bind_group_layout(&self.composite.debug_layout);
+        let layers = &body.layers;
+        Some(self.device.create_bind_group(
+            "fluid_debug_view",
+            &layout,
+            &BindGroupEntries::sequential((
+                layers.bulk_view(),
+                &layers.bulk_normals.default_view,
+                &layers.spray.default_view,
+                &layers.spray_normals.default_view,
+                &layers.exits.default_view,
+                self.uniforms.depth_ranges.binding()?,
+            )),
+        ))
+    }
+}

@@ -1,0 +1,467 @@
+//! The bodies of a view: fluids of equal material, what they need this frame and where it goes.
+
+use core::ops::Range;
+
+use bevy::{
+    camera::{ClearColorConfig, MainPassResolutionOverride},
+    prelude::*,
+    render::{
+        camera::ExtractedCamera,
+        render_asset::RenderAssets,
+        render_phase::TrackedRenderPass,
+        render_resource::{
+            BindGroup, CachedRenderPipelineId, DynamicUniformBuffer, PipelineCache,
+            SpecializedRenderPipelines,
+        },
+        renderer::{RenderDevice, RenderQueue},
+        texture::{CachedTexture, GpuImage, TextureCache},
+        view::{ExtractedView, ViewUniformOffset},
+    },
+};
+
+use super::{
+    bounds::Bounds,
+    composite::{CompositeKey, CompositePipeline},
+    extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
+    gpu_types::{GpuBody, GpuFluid},
+    layers::Layers,
+    normals::{NormalSource, NormalsKey, NormalsPipeline},
+    plan::{Plan, PlanInput, plan},
+    refract::{RefractKey, RefractPipeline},
+    scene_copy::{Placeholders, scene_copy},
+    smooth::{SmoothPipeline, SmoothSteps, window_radii},
+    splat::{SplatKey, SplatOutput, SplatPipeline, SplatPipelines},
+    support::FluidSupport,
+};
+use crate::{
+    material::FluidMaterial,
+    settings::{FluidDebugView, Fresnel, ScreenSpaceFluid, Search, Smoothing},
+};
+
+/// The fluids of equal material that a view sees, and everything their passes need.
+pub struct Body {
+    /// What is done for it this frame.
+    pub plan: Plan,
+    /// What its passes draw into.
+    pub layers: Layers,
+    /// The pixels it may cover.
+    pub scissor: URect,
+    pub(crate) fluids: Vec<BodyFluid>,
+    pub(crate) steps: SmoothSteps,
+    pub(crate) pipelines: BodyPipelines,
+    pub(crate) groups: BodyGroups,
+    pub(crate) debug: bool,
+    pub(crate) depth_range_offset: u32,
+    pub(crate) environment: Option<AssetId<Image>>,
+    view_offset: u32,
+    body_offset: u32,
+    ready: bool,
+}
+
+/// Which splats of a fluid are drawn.
+pub(crate) struct BodyFluid {
+    pub(crate) entity: Entity,
+    pub(crate) bulk: Range<u32>,
+    pub(crate) spray: Range<u32>,
+}
+
+pub(crate) struct BodyPipelines {
+    pub(crate) splat: SplatPipelines,
+    pub(crate) smooth: Vec<CachedRenderPipelineId>,
+    pub(crate) bulk_normals: Option<CachedRenderPipelineId>,
+    pub(crate) spray_normals: Option<CachedRenderPipelineId>,
+    pub(crate) refract: CachedRenderPipelineId,
+    pub(crate) composite: CachedRenderPipelineId,
+}
+
+impl BodyPipelines {
+    fn ready(&self, cache: &PipelineCache) -> bool {
+        let splat: &[_] = match &self.splat {
+            SplatPipelines::MaxBlend(id) => &[*id],
+            SplatPipelines::DepthDraws { front, back, merge } => &[*front, *back, *merge],
+        };
+        splat
+            .iter()
+            .chain(&self.smooth)
+            .chain(&self.bulk_normals)
+            .chain(&self.spray_normals)
+            .chain([&self.refract, &self.composite])
+            .all(|&id| cache.get_render_pipeline(id).is_some())
+    }
+}
+
+#[derive(Default)]
+pub(crate) struct BodyGroups {
+    pub(crate) common: Option<BindGroup>,
+    pub(crate) merge: Option<BindGroup>,
+    pub(crate) smooth: Vec<BindGroup>,
+    pub(crate) bulk_normals: Option<BindGroup>,
+    pub(crate) spray_normals: Option<BindGroup>,
+    pub(crate) refract: Option<BindGroup>,
+    pub(crate) composite: Option<BindGroup>,
+}
+
+impl Body {
+    pub(crate) fn set_scissor(&self, pass: &mut TrackedRenderPass) {
+        let URect { min, max } = self.scissor;
+        pass.set_scissor_rect(min.x, min.y, max.x - min.x, max.y - min.y);
+    }
+
+    pub(crate) fn set_common<'a>(&'a self, pass: &mut TrackedRenderPass<'a>) {
+        if let Some(group) = &self.groups.common {
+            pass.set_bind_group(0, group, &[self.view_offset, self.body_offset]);
+        }
+    }
+
+    /// Called once the bind groups are there: a body whose pipelines still compile waits.
+    pub(crate) fn mark_ready(&mut self, cache: &PipelineCache) {
+        self.ready = self.groups.common.is_some() && self.pipelines.ready(cache);
+    }
+}
+
+/// The bodies a view sees, from far to near. A view that sees none has no such component.
+#[derive(Component)]
+pub struct ViewBodies {
+    /// From far to near.
+    pub bodies: Vec<Body>,
+    pub(crate) viewport: URect,
+    pub(crate) scene_color: Option<CachedTexture>,
+    pub(crate) multisampled: bool,
+}
+
+impl ViewBodies {
+    pub(crate) fn ready(&self) -> impl Iterator<Item = &Body> {
+        self.bodies.iter().filter(|body| body.ready)
+    }
+}
+
+/// Uniforms of all bodies and fluids of the frame.
+#[derive(Resource, Default)]
+pub(crate) struct FluidUniforms {
+    pub(crate) bodies: DynamicUniformBuffer<GpuBody>,
+    pub(crate) fluids: DynamicUniformBuffer<GpuFluid>,
+    /// For debug views: nearest and farthest view depth.
+    pub(crate) depth_ranges: DynamicUniformBuffer<Vec4>,
+}
+
+/// The pipelines of all passes, by key.
+#[derive(bevy::ecs::system::SystemParam)]
+pub(crate) struct Pipelines<'w> {
+    cache: Res<'w, PipelineCache>,
+    splat: Res<'w, SplatPipeline>,
+    splats: ResMut<'w, SpecializedRenderPipelines<SplatPipeline>>,
+    smooth: Res<'w, SmoothPipeline>,
+    smooths: ResMut<'w, SpecializedRenderPipelines<SmoothPipeline>>,
+    normals: Res<'w, NormalsPipeline>,
+    normalses: ResMut<'w, SpecializedRenderPipelines<NormalsPipeline>>,
+    refract: Res<'w, RefractPipeline>,
+    refracts: ResMut<'w, SpecializedRenderPipelines<RefractPipeline>>,
+    composite: Res<'w, CompositePipeline>,
+    composites: ResMut<'w, SpecializedRenderPipelines<CompositePipeline>>,
+}
+
+impl Pipelines<'_> {
+    fn splat(&mut self, output: SplatOutput, multisampled: bool) -> CachedRenderPipelineId {
+        let key = SplatKey {
+            output,
+            multisampled,
+        };
+        self.splats.specialize(&self.cache, &self.splat, key)
+    }
+
+    fn normals(&mut self, source: NormalSource, multisampled: bool) -> CachedRenderPipelineId {
+        let key = NormalsKey {
+            source,
+            multisampled,
+        };
+        self.normalses.specialize(&self.cache, &self.normals, key)
+    }
+
+    fn of(
+        &mut self,
+        plan: &Plan,
+        steps: &SmoothSteps,
+        settings: &ScreenSpaceFluid,
+        max_blend: bool,
+        composite: CompositeKey,
+    ) -> BodyPipelines {
+        let multisampled = composite.samples > 1;
+        let splat = if max_blend {
+            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers, multisampled))
+        } else {
+            SplatPipelines::DepthDraws {
+                front: self.splat(SplatOutput::FrontDepth, multisampled),
+                back: self.splat(SplatOutput::BackDepth, multisampled),
+                merge: self.splat.merge,
+            }
+        };
+        let depth_normals = plan.bulk && !steps.yields_normals();
+        let refract = RefractKey {
+            interfaces: plan.interfaces,
+            bulk: plan.bulk,
+            spray: plan.spray,
+            index_one: plan.index_one,
+            secant: plan.interfaces > 1 && settings.search == Search::Secant,
+            schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
+            multisampled,
+        };
+        BodyPipelines {
+            splat,
+            smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth, multisampled),
+            bulk_normals: depth_normals.then(|| self.normals(NormalSource::Depth, multisampled)),
+            spray_normals: plan
+                .spray
+                .then(|| self.normals(NormalSource::Ellipsoids, multisampled)),
+            refract: self
+                .refracts
+                .specialize(&self.cache, &self.refract, refract),
+            composite: self
+                .composites
+                .specialize(&self.cache, &self.composite, composite),
+        }
+    }
+}
+
+/// Writes where every fluid stands.
+pub(crate) fn prepare_fluids(
+    mut fluids: Query<(&ExtractedFluid, &mut GpuSplats)>,
+    mut uniforms: ResMut<FluidUniforms>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    uniforms.fluids.clear();
+    for (fluid, mut gpu) in &mut fluids {
+        gpu.offset = uniforms.fluids.push(&GpuFluid {
+            world_from_local: fluid.transform.to_matrix(),
+        });
+    }
+    uniforms.fluids.write_buffer(&device, &queue);
+}
+
+/// Groups the fluids of every view into bodies, plans their passes and gives them textures.
+pub(crate) fn prepare_bodies(
+    mut commands: Commands,
+    views: Query<(
+        Entity,
+        &ExtractedView,
+        &ExtractedCamera,
+        &ViewUniformOffset,
+        &Msaa,
+        &ScreenSpaceFluid,
+        &ViewSurroundings,
+        Option<&FluidDebugView>,
+        Option<&MainPassResolutionOverride>,
+    )>,
+    fluids: Query<(Entity, &ExtractedFluid)>,
+    lights: Res<FluidLights>,
+    images: Res<RenderAssets<GpuImage>>,
+    clear_color: Res<ClearColor>,
+    support: Res<FluidSupport>,
+    placeholders: Res<Placeholders>,
+    mut pipelines: Pipelines,
+    mut textures: ResMut<TextureCache>,
+    mut uniforms: ResMut<FluidUniforms>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    uniforms.bodies.clear();
+    uniforms.depth_ranges.clear();
+    for (entity, view, camera, offset, msaa, settings, surroundings, debug_view, resolution) in
+        &views
+    {
+        commands.entity(entity).remove::<ViewBodies>();
+        let Some(target_size) = camera.physical_target_size else {
+            continue;
+        };
+        if !support.drawing {
+            continue;
+        }
+        let mut viewport = view.viewport;
+        if let Some(size) = resolution {
+            (viewport.z, viewport.w) = (size.x, size.y);
+        }
+        let view_from_world = view.world_from_view.affine().inverse();
+        let clip_from_world = view
+            .clip_from_world
+            .unwrap_or_else(|| view.clip_from_view * Mat4::from(view_from_world));
+        let eye = view.world_from_view.translation();
+
+        let mut bodies = Vec::new();
+        let visible: Vec<_> = fluids
+            .iter()
+            .filter(|(_, fluid)| fluid.visible && fluid.layers.intersects(&surroundings.layers))
+            .collect();
+        for (material, members) in by_material(&visible) {
+            let bounds = members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
+                bounds.union(fluid.bounds.transformed(&fluid.transform.affine()))
+            });
+            let scissor = bounds.scissor(&clip_from_world, viewport);
+            let count = |of: fn(&ExtractedFluid) -> u32| {
+                members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
+            };
+            let planned = plan(&PlanInput {
+                in_view: scissor.is_some(),
+                eye_in_bounds: bounds.contains(eye),
+                bulk: count(|fluid| fluid.bulk),
+                interior: count(|fluid| fluid.interior),
+                spray: count(|fluid| fluid.spray),
+                refractive_index: material.refractive_index,
+                settings: *settings,
+            });
+            let (Some(plan), Some(scissor)) = (planned, scissor) else {
+                continue;
+            };
+            let radius = members.iter().map(|(_, f)| f.radius).fold(0.0, f32::max);
+            let steps = SmoothSteps::new(&plan.smoothing);
+            let map = surroundings
+                .map
+                .as_ref()
+                .filter(|map| is_cubemap(&images, map.image.id()));
+            let mut body = gpu_body(&material, radius, settings, &plan, &lights);
+            if let Some(map) = map {
+                // Cubemaps are left-handed.
+                body.environment_from_world = Mat3::from_diagonal(vec3(1.0, 1.0, -1.0))
+                    * Mat3::from_quat(map.rotation.inverse());
+                body.environment_intensity = map.intensity * camera.exposure;
+            }
+            body.clear_color = match camera.clear_color {
+                ClearColorConfig::Custom(color) => color,
+                _ => clear_color.0,
+            }
+            .to_linear()
+            .to_vec3();
+            let composite = CompositeKey {
+                debug_view: debug_view.copied(),
+                format: view.target_format,
+                samples: msaa.samples(),
+            };
+            let pipelines =
+                pipelines.of(&plan, &steps, settings, support.max_blend, composite);
+            let layers = Layers::new(
+                &mut textures,
+                &device,
+                target_size,
+                &plan,
+                &steps,
+                &support,
+                &placeholders.layers,
+            );
+            let depths = view_depths(&bounds, &Mat4::from(view_from_world));
+            bodies.push((
+                bounds.center().distance_squared(eye),
+                Body {
+                    plan,
+                    layers,
+                    scissor,
+                    fluids: members
+                        .iter()
+                        .map(|(entity, fluid)| drawn(*entity, fluid, plan.interior))
+                        .collect(),
+                    steps,
+                    pipelines,
+                    groups: BodyGroups::default(),
+                    debug: debug_view.is_some(),
+                    depth_range_offset: uniforms.depth_ranges.push(&depths),
+                    environment: map.map(|map| map.image.id()),
+                    view_offset: offset.offset,
+                    body_offset: uniforms.bodies.push(&body),
+                    ready: false,
+                },
+            ));
+        }
+        if bodies.is_empty() {
+            continue;
+        }
+        bodies.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        commands.entity(entity).insert(ViewBodies {
+            bodies: bodies.into_iter().map(|(_, body)| body).collect(),
+            viewport: URect::from_corners(viewport.xy(), viewport.xy() + viewport.zw()),
+            scene_color: debug_view.is_none().then(|| {
+                scene_copy(&mut textures, &device, target_size, view.target_format)
+            }),
+            multisampled: msaa.samples() > 1,
+        });
+    }
+    uniforms.bodies.write_buffer(&device, &queue);
+    uniforms.depth_ranges.write_buffer(&device, &queue);
+}
+
+type Members<'a> = Vec<(Entity, &'a ExtractedFluid)>;
+
+/// Fluids of equal material, in the order they first appear.
+fn by_material<'a>(fluids: &[(Entity, &'a ExtractedFluid)]) -> Vec<(FluidMaterial, Members<'a>)> {
+    let mut groups: Vec<(FluidMaterial, Members<'a>)> = Vec::new();
+    for &(entity, fluid) in fluids {
+        match groups.iter_mut().find(|(m, _)| *m == fluid.material) {
+            Some((_, members)) => members.push((entity, fluid)),
+            None => groups.push((fluid.material, vec![(entity, fluid)])),
+        }
+    }
+    groups
+}
+
+/// Splats lie in the order bulk, interior, spray.
+fn drawn(entity: Entity, fluid: &ExtractedFluid, interior: bool) -> BodyFluid {
+    let surface = fluid.bulk;
+    let bulk = surface + fluid.interior;
+    BodyFluid {
+        entity,
+        bulk: 0..if interior { bulk } else { surface },
+        spray: bulk..bulk + fluid.spray,
+    }
+}
+
+fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
+    images
+        .get(id)
+        .is_some_and(|image| image.texture.depth_or_array_layers() == 6)
+}
+
+fn gpu_body(
+    material: &FluidMaterial,
+    radius: f32,
+    settings: &ScreenSpaceFluid,
+    plan: &Plan,
+    lights: &FluidLights,
+) -> GpuBody {
+    let (window, range, bound) = match plan.smoothing {
+        Smoothing::None => (0.0, 1.0, 0.0),
+        Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
+        // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²), and the published filter knows no bound.
+        Smoothing::Bilateral(filter) => (
+            window_radii(filter.window),
+            filter.range * core::f32::consts::SQRT_2,
+            1e6,
+        ),
+    };
+    let positive = |value: f32, fallback: f32| {
+        if value.is_finite() && value > 0.0 {
+            value
+        } else {
+            fallback
+        }
+    };
+    GpuBody {
+        extinction: material.medium.extinction(),
+        refractive_index: positive(material.refractive_index, 1.0).clamp(0.2, 5.0),
+        lights: lights.lights,
+        light_count: lights.count,
+        perceptual_roughness: positive(material.perceptual_roughness, 0.1).clamp(0.03, 1.0),
+        radius,
+        window_radii: window,
+        range: positive(range, 2.0) * radius,
+        bound: positive(bound, 2.0) * radius,
+        coarse_samples: match settings.search {
+            Search::Secant => 0,
+            Search::Bracketed { coarse_samples } => coarse_samples.min(32),
+        },
+        ..default()
+    }
+}
+
+/// Nearest and farthest depth of the box, for debug views.
+fn view_depths(bounds: &Bounds, view_from_world: &Mat4) -> Vec4 {
+    let in_view = bounds.transformed(&bevy::math::Affine3A::from_mat4(*view_from_world));
+    let near = (-in_view.max.z).max(0.0);
+    vec4(near, (-in_view.min.z).max(near + 1e-6), 0.0, 0.0)
+}

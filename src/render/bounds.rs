@@ -1,0 +1,146 @@
+//! A body's bounding box on screen.
+
+use bevy::{math::Affine3A, prelude::*};
+
+/// A box that holds points, possibly none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    pub(crate) min: Vec3,
+    pub(crate) max: Vec3,
+}
+
+impl Bounds {
+    pub(crate) const EMPTY: Self = Self {
+        min: Vec3::INFINITY,
+        max: Vec3::NEG_INFINITY,
+    };
+
+    pub(crate) fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    pub(crate) fn contains(&self, point: Vec3) -> bool {
+        self.min.cmple(point).all() && self.max.cmpge(point).all()
+    }
+
+    pub(crate) fn center(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    fn corners(&self) -> [Vec3; 8] {
+        core::array::from_fn(|i| {
+            let pick = |axis: usize| {
+                if (i >> axis) & 1 == 0 {
+                    self.min[axis]
+                } else {
+                    self.max[axis]
+                }
+            };
+            vec3(pick(0), pick(1), pick(2))
+        })
+    }
+
+    /// The box around the transformed box.
+    pub(crate) fn transformed(&self, transform: &Affine3A) -> Self {
+        if self.is_empty() {
+            return Self::EMPTY;
+        }
+        self.corners().into_iter().fold(Self::EMPTY, |bounds, p| {
+            let p = transform.transform_point3(p);
+            bounds.union(Self { min: p, max: p })
+        })
+    }
+
+    /// The pixels of `viewport` (x, y, width, height) the box may cover; `None` if it cannot be
+    /// seen.
+    pub(crate) fn scissor(&self, clip_from_world: &Mat4, viewport: UVec4) -> Option<URect> {
+        if self.is_empty() || viewport.z == 0 || viewport.w == 0 {
+            return None;
+        }
+        let clip = self.corners().map(|p| *clip_from_world * p.extend(1.0));
+        let all = |outside: fn(&Vec4) -> bool| clip.iter().all(outside);
+        if all(|c| c.x < -c.w)
+            || all(|c| c.x > c.w)
+            || all(|c| c.y < -c.w)
+            || all(|c| c.y > c.w)
+            || all(|c| c.z > c.w)
+            || all(|c| c.z < 0.0)
+        {
+            return None;
+        }
+        let origin = viewport.xy();
+        let size = viewport.zw();
+        let whole = URect::from_corners(origin, origin + size);
+        // Part of it is behind the eye: its projection has no bound.
+        if clip.iter().any(|c| c.w <= 1e-6 || c.z > c.w) {
+            return Some(whole);
+        }
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for c in clip {
+            let ndc = c.xy() / c.w;
+            let pixel = (ndc * vec2(0.5, -0.5) + 0.5) * size.as_vec2() + origin.as_vec2();
+            low = low.min(pixel);
+            high = high.max(pixel);
+        }
+        // One pixel more, for the slack of the splats' quads.
+        let low = (low.floor() - 1.0).max(origin.as_vec2()).as_uvec2();
+        let high = (high.ceil() + 1.0)
+            .min((origin + size).as_vec2())
+            .as_uvec2();
+        (low.cmplt(high).all()).then(|| URect::from_corners(low, high))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clip() -> Mat4 {
+        Mat4::perspective_infinite_reverse_rh(1.0, 1.0, 0.1)
+    }
+
+    #[test]
+    fn boxes_out_of_view_have_no_scissor() {
+        let viewport = uvec4(0, 0, 100, 100);
+        let at = |center: Vec3| Bounds {
+            min: center - 0.5,
+            max: center + 0.5,
+        };
+        assert!(at(vec3(0.0, 0.0, 5.0)).scissor(&clip(), viewport).is_none());
+        assert!(
+            at(vec3(50.0, 0.0, -5.0))
+                .scissor(&clip(), viewport)
+                .is_none()
+        );
+        assert!(Bounds::EMPTY.scissor(&clip(), viewport).is_none());
+    }
+
+    #[test]
+    fn a_centred_box_is_confined_and_honours_the_viewports_origin() {
+        let bounds = Bounds {
+            min: vec3(-0.5, -0.5, -5.5),
+            max: vec3(0.5, 0.5, -4.5),
+        };
+        let rect = bounds.scissor(&clip(), uvec4(200, 100, 100, 100)).unwrap();
+        assert!(rect.contains(uvec2(250, 150)));
+        assert!(rect.min.x > 220 && rect.max.x < 280, "{rect:?}");
+        assert_eq!(rect.min.x - 200, 300 - rect.max.x);
+    }
+
+    #[test]
+    fn a_box_around_the_eye_takes_the_whole_viewport() {
+        let bounds = Bounds {
+            min: Vec3::splat(-1.0),
+            max: Vec3::splat(1.0),
+        };
+        let rect = bounds.scissor(&clip(), uvec4(0, 0, 64, 32)).unwrap();
+        assert_eq!(rect, URect::new(0, 0, 64, 32));
+    }
+}

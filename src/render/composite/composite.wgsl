@@ -1,0 +1,138 @@
+// The liquid over the opaque scene.
+
+#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::functions::{
+    decode_normal, device_from_view, has_back, nearest_scene_depth, ndc_from_pixel,
+    pixel_from_ndc, view_from_device,
+}
+#import bevy_fluid::render::optics::environment
+#import bevy_fluid::render::types::INSIDE_FRONT
+
+@group(1) @binding(2) var radiance: texture_2d<f32>;
+@group(1) @binding(3) var transmission: texture_2d<f32>;
+@group(1) @binding(4) var exits: texture_2d<u32>;
+@group(1) @binding(5) var bulk_layers: texture_2d<f32>;
+@group(1) @binding(6) var spray_layers: texture_2d<f32>;
+@group(1) @binding(7) var scene_color: texture_2d<f32>;
+@group(1) @binding(8) var scene_sampler: sampler;
+
+struct Output {
+    @location(0) color: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+const THERE: u32 = 0x80000000u;
+const DIRECT: u32 = 0x80000u;
+const STEPS: i32 = 24;
+const REFINEMENTS: i32 = 5;
+
+fn color_at(pixel: vec2<f32>) -> vec3<f32> {
+    // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
+    let low = view.main_pass_viewport.xy + 0.5;
+    let high = view.main_pass_viewport.xy + view.main_pass_viewport.zw - 0.5;
+    let uv = clamp(pixel, low, high) / vec2<f32>(textureDimensions(scene_color));
+    return textureSampleLevel(scene_color, scene_sampler, uv, 0.0).rgb;
+}
+
+// The end of a ray on screen, where it leaves the viewport or comes to its vanishing point.
+struct Track {
+    start: vec3<f32>,
+    end: vec3<f32>,
+    // Whether `end` is infinitely far away (or beyond an orthographic far plane).
+    complete: bool,
+}
+
+// Along a ray the screen position and the device depth are affine in each other.
+fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
+    let start = device_from_view(position);
+    let clip = view.clip_from_view * vec4(direction, 0.0);
+    var end: vec3<f32>;
+    if clip.w > 1e-6 {
+        end = clip.xyz / clip.w;
+    } else {
+        // Parallel to the screen, towards the eye, or orthographic: as far as the depths go.
+        let t = select(1e4, start.z / -clip.z, clip.z < 0.0 && clip.w >= 0.0);
+        end = device_from_view(position + t * direction);
+        if clip.w < 0.0 {
+            end = start;
+        }
+    }
+    let move = end - start;
+    // Distance to the border along each axis, as a fraction of the way.
+    let border = select(vec2(-1.0), vec2(1.0), move.xy >= vec2(0.0));
+    let reach = select(vec2(1e9), (border - start.xy) / move.xy, abs(move.xy) > vec2(1e-9));
+    let fraction = clamp(min(reach.x, reach.y), 0.0, 1.0);
+    return Track(start, start + fraction * move, fraction >= 1.0);
+}
+
+fn pixel_on(track: Track, s: f32) -> vec2<f32> {
+    return pixel_from_ndc(mix(track.start.xy, track.end.xy, s));
+}
+
+fn scene_on(track: Track, s: f32) -> f32 {
+    let high = vec2<i32>(view.main_pass_viewport.xy + view.main_pass_viewport.zw) - 1;
+    let low = vec2<i32>(view.main_pass_viewport.xy);
+    return nearest_scene_depth(clamp(vec2<i32>(pixel_on(track, s)), low, high));
+}
+
+// The scene's colour where the ray meets its depth, else the environment.
+fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let way = track(position, direction);
+    var before = 0.0;
+    for (var i = 1; i <= STEPS; i += 1) {
+        var s = f32(i) / f32(STEPS);
+        let ray_depth = mix(way.start.z, way.end.z, s);
+        let scene_depth = scene_on(way, s);
+        // Reverse z: behind something. It is met if it lies within the step, not if it covers
+        // the ray from nearer the eye.
+        let entry = mix(way.start.z, way.end.z, before);
+        let slack = 0.05 * entry;
+        if scene_depth > ray_depth && scene_depth <= entry + slack {
+            var low = before;
+            for (var k = 0; k < REFINEMENTS; k += 1) {
+                let middle = 0.5 * (low + s);
+                if scene_on(way, middle) > mix(way.start.z, way.end.z, middle) {
+                    s = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            return color_at(pixel_on(way, s));
+        }
+        before = s;
+    }
+    return environment(direction);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> Output {
+    let pixel = vec2<i32>(position.xy);
+    let exit = textureLoad(exits, pixel, 0);
+    if (exit.w & THERE) == 0u {
+        discard;
+    }
+    let bulk = textureLoad(bulk_layers, pixel, 0).xy;
+    let spray = textureLoad(spray_layers, pixel, 0).xy;
+    let front = max(bulk.x, spray.x);
+
+    let uv = unpack2x16unorm(exit.x);
+    let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
+    var behind: vec3<f32>;
+    if (exit.w & DIRECT) != 0u {
+        behind = color_at(pixel_from_ndc(ndc));
+    } else {
+        let start = view_from_device(ndc, bitcast<f32>(exit.y));
+        behind = background(start, decode_normal(unpack2x16snorm(exit.z)));
+    }
+
+    var out: Output;
+    let light = textureLoad(radiance, pixel, 0).rgb + textureLoad(transmission, pixel, 0).rgb * behind;
+    out.color = vec4(light, 1.0);
+    out.depth = front;
+    if front >= INSIDE_FRONT {
+        // The eye is in the liquid: its far surface, or what stands in it, is what is seen.
+        let layers = select(spray, bulk, bulk.x >= INSIDE_FRONT);
+        out.depth = max(select(0.0, -layers.y, has_back(layers)), nearest_scene_depth(pixel));
+    }
+    return out;
+}

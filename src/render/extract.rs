@@ -1,0 +1,271 @@
+//! What the render world takes over each frame. Particles are swapped, never copied.
+
+use bevy::{
+    camera::visibility::RenderLayers,
+    ecs::query::QueryItem,
+    light::Skybox,
+    prelude::*,
+    render::{
+        Extract, MainWorld,
+        extract_component::ExtractComponent,
+        render_resource::{BindGroup, Buffer, BufferDescriptor, BufferUsages},
+        renderer::{RenderDevice, RenderQueue},
+        sync_component::SyncComponent,
+        sync_world::RenderEntity,
+    },
+};
+
+use super::{
+    bounds::Bounds,
+    gpu_types::{GpuDirectionalLight, MAX_LIGHTS},
+};
+use crate::{
+    material::FluidMaterial,
+    particles::{FluidParticles, ShapedFluid},
+    settings::{FluidDebugView, ScreenSpaceFluid},
+    shape::Splat,
+};
+
+impl SyncComponent for ScreenSpaceFluid {
+    type Target = (Self, ViewSurroundings);
+}
+
+impl ExtractComponent for ScreenSpaceFluid {
+    type QueryData = (
+        &'static Self,
+        Option<&'static EnvironmentMapLight>,
+        Option<&'static Skybox>,
+        Option<&'static RenderLayers>,
+    );
+    type QueryFilter = With<Camera3d>;
+    type Out = (Self, ViewSurroundings);
+
+    fn extract_component(
+        (settings, light, skybox, layers): QueryItem<'_, '_, Self::QueryData>,
+    ) -> Option<Self::Out> {
+        let map = light
+            .map(|light| EnvironmentMap {
+                image: light.specular_map.clone(),
+                intensity: light.intensity,
+                rotation: light.rotation,
+            })
+            .or_else(|| {
+                let skybox = skybox?;
+                Some(EnvironmentMap {
+                    image: skybox.image.clone()?,
+                    intensity: skybox.brightness,
+                    rotation: skybox.rotation,
+                })
+            });
+        let surroundings = ViewSurroundings {
+            map,
+            layers: layers.cloned().unwrap_or_default(),
+        };
+        Some((*settings, surroundings))
+    }
+}
+
+impl SyncComponent for FluidDebugView {
+    type Target = Self;
+}
+
+impl ExtractComponent for FluidDebugView {
+    type QueryData = &'static Self;
+    type QueryFilter = With<ScreenSpaceFluid>;
+    type Out = Self;
+
+    fn extract_component(view: QueryItem<'_, '_, Self::QueryData>) -> Option<Self> {
+        Some(*view)
+    }
+}
+
+/// A cubemap of what is far away.
+#[derive(Clone)]
+pub(crate) struct EnvironmentMap {
+    pub(crate) image: Handle<Image>,
+    /// cd/m² per texel value.
+    pub(crate) intensity: f32,
+    pub(crate) rotation: Quat,
+}
+
+/// What a view sees beside the fluid.
+#[derive(Component, Clone)]
+pub struct ViewSurroundings {
+    pub(crate) map: Option<EnvironmentMap>,
+    pub(crate) layers: RenderLayers,
+}
+
+/// The scene's directional lights.
+#[derive(Resource, Default)]
+pub(crate) struct FluidLights {
+    pub(crate) lights: [GpuDirectionalLight; MAX_LIGHTS],
+    pub(crate) count: u32,
+}
+
+pub(crate) fn extract_lights(
+    lights: Extract<Query<(&DirectionalLight, &GlobalTransform, &ViewVisibility)>>,
+    mut extracted: ResMut<FluidLights>,
+) {
+    extracted.count = 0;
+    let visible = lights.iter().filter(|(_, _, visibility)| visibility.get());
+    for (slot, (light, transform, _)) in (0..MAX_LIGHTS).zip(visible) {
+        let color = light.color.to_linear().to_vec3();
+        extracted.lights[slot] = GpuDirectionalLight {
+            direction_to_light: transform.back().into(),
+            illuminance: color * light.illuminance,
+        };
+        extracted.count += 1;
+    }
+}
+
+/// A fluid in the render world: where it is, what it is made of and its splats.
+#[derive(Component, Default)]
+pub struct ExtractedFluid {
+    pub(crate) transform: GlobalTransform,
+    pub(crate) material: FluidMaterial,
+    pub(crate) layers: RenderLayers,
+    pub(crate) visible: bool,
+    /// In world units.
+    pub(crate) radius: f32,
+    pub(crate) bounds: Bounds,
+    pub(crate) bulk: u32,
+    pub(crate) interior: u32,
+    pub(crate) spray: u32,
+    splats: Vec<Splat>,
+    fresh: bool,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl SyncComponent for FluidParticles {
+    type Target = (ExtractedFluid, GpuSplats);
+}
+
+/// Splats in a storage buffer, uploaded only when they have changed.
+#[derive(Component, Default)]
+pub struct GpuSplats {
+    pub(crate) buffer: Option<Buffer>,
+    /// Where the fluid stands, in the buffer of all fluids' transforms.
+    pub(crate) offset: u32,
+    pub(crate) bind_group: Option<BindGroup>,
+    /// How often splats have been uploaded.
+    pub uploads: u64,
+}
+
+/// Takes over transforms and materials every frame, splats only when they were shaped anew: the
+/// two worlds swap their buffers.
+pub(crate) fn extract_fluids(
+    mut main: ResMut<MainWorld>,
+    mut state: Local<
+        Option<
+            QueryState<(
+                RenderEntity,
+                &GlobalTransform,
+                &FluidMaterial,
+                &FluidParticles,
+                &InheritedVisibility,
+                Option<&RenderLayers>,
+                &mut ShapedFluid,
+            )>,
+        >,
+    >,
+    mut fluids: Query<&mut ExtractedFluid>,
+    mut commands: Commands,
+) {
+    let state = state.get_or_insert_with(|| main.query());
+    for (entity, transform, material, particles, visibility, layers, mut shaped) in
+        state.iter_mut(&mut main)
+    {
+        let mut new = None;
+        let mut known = fluids.get_mut(entity).ok();
+        let fluid = match known.as_deref_mut() {
+            Some(fluid) => fluid,
+            None => new.insert(ExtractedFluid::default()),
+        };
+        fluid.transform = *transform;
+        fluid.material = *material;
+        fluid.visible = visibility.get();
+        fluid.radius = particles.radius * mean_scale(transform);
+        fluid.layers.clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
+        // Taking the splats is no change that anyone should react to.
+        let shaped = shaped.bypass_change_detection();
+        if shaped.take_fresh() {
+            let splats = &mut shaped.splats;
+            core::mem::swap(&mut fluid.splats, &mut splats.splats);
+            fluid.bounds = Bounds {
+                min: splats.min,
+                max: splats.max,
+            };
+            (fluid.bulk, fluid.interior, fluid.spray) =
+                (splats.bulk, splats.interior, splats.spray);
+            fluid.fresh = true;
+        }
+        if let Some(fluid) = new {
+            commands
+                .entity(entity)
+                .insert((fluid, GpuSplats::default()));
+        }
+    }
+}
+
+/// The scale of a sphere of the same volume.
+fn mean_scale(transform: &GlobalTransform) -> f32 {
+    let matrix = transform.affine().matrix3;
+    let volume = matrix.determinant().abs();
+    if volume.is_finite() && volume > 0.0 {
+        volume.cbrt()
+    } else {
+        1.0
+    }
+}
+
+pub(crate) fn upload_splats(
+    mut fluids: Query<(&mut ExtractedFluid, &mut GpuSplats)>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    for (mut fluid, mut gpu) in &mut fluids {
+        // A lost device takes its buffers along; the splats are still here.
+        if !fluid.fresh && (gpu.buffer.is_some() || fluid.splats.is_empty()) {
+            continue;
+        }
+        fluid.fresh = false;
+        if fluid.splats.is_empty() {
+            continue;
+        }
+        let limit = device.limits();
+        let room = limit
+            .max_storage_buffer_binding_size
+            .min(limit.max_buffer_size) as usize
+            / size_of::<Splat>();
+        if fluid.splats.len() > room {
+            bevy::utils::once!(warn!(
+                "a fluid of {} particles exceeds the adapter's buffers: the first {room} are drawn",
+                fluid.splats.len()
+            ));
+            fluid.bulk = fluid.bulk.min(room as u32);
+            fluid.interior = fluid.interior.min(room as u32 - fluid.bulk);
+            fluid.spray = fluid.spray.min(room as u32 - fluid.bulk - fluid.interior);
+            fluid.splats.truncate(room);
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&fluid.splats);
+        let needed = bytes.len() as u64;
+        if gpu.buffer.as_ref().is_none_or(|b| b.size() < needed) {
+            let capacity = fluid.splats.len().next_power_of_two().min(room);
+            gpu.buffer = Some(device.create_buffer(&BufferDescriptor {
+                label: Some("fluid_splats"),
+                size: (capacity * size_of::<Splat>()) as u64,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        if let Some(buffer) = &gpu.buffer {
+            queue.write_buffer(buffer, 0, bytes);
+        }
+        gpu.uploads += 1;
+    }
+}

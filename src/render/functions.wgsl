@@ -1,0 +1,122 @@
+#define_import_path bevy_fluid::render::functions
+
+#import bevy_fluid::render::bindings::{body, scene_depth, view}
+#import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
+#import bevy_render::view::frag_coord_to_ndc
+
+struct Ray {
+    origin: vec3<f32>,
+    // Unit length.
+    direction: vec3<f32>,
+}
+
+fn ndc_from_pixel(pixel: vec2<f32>) -> vec2<f32> {
+    return frag_coord_to_ndc(vec4(pixel, 0.0, 1.0), view.main_pass_viewport).xy;
+}
+
+fn pixel_from_ndc(ndc: vec2<f32>) -> vec2<f32> {
+    return (ndc * vec2(0.5, -0.5) + 0.5) * view.main_pass_viewport.zw + view.main_pass_viewport.xy;
+}
+
+// The view ray through a point of the screen, from the near plane on, for any projection.
+fn view_ray(ndc: vec2<f32>) -> Ray {
+    let near = view.view_from_clip * vec4(ndc, 1.0, 1.0);
+    let far = view.view_from_clip * vec4(ndc, 0.0, 1.0);
+    // Homogeneous difference: the far point may be at infinity (w = 0).
+    let along = far.xyz * near.w - near.xyz * far.w;
+    return Ray(near.xyz / near.w, normalize(along * sign(near.w)));
+}
+
+fn view_from_device(ndc: vec2<f32>, depth: f32) -> vec3<f32> {
+    let position = view.view_from_clip * vec4(ndc, depth, 1.0);
+    return position.xyz / position.w;
+}
+
+fn device_from_view(position: vec3<f32>) -> vec3<f32> {
+    let clip = view.clip_from_view * vec4(position, 1.0);
+    return clip.xyz / clip.w;
+}
+
+// The way from device depth to view depth (positive forward) along one pixel's ray:
+// z = −(numerator · (1, d)) / (denominator · (1, d)).
+struct DepthMap {
+    numerator: vec2<f32>,
+    denominator: vec2<f32>,
+}
+
+fn depth_map(ndc: vec2<f32>) -> DepthMap {
+    let start = view.view_from_clip * vec4(ndc, 0.0, 1.0);
+    let step = view.view_from_clip[2];
+    return DepthMap(vec2(start.z, step.z), vec2(start.w, step.w));
+}
+
+fn view_depth(map: DepthMap, d: f32) -> f32 {
+    return -(map.numerator.x + map.numerator.y * d) / (map.denominator.x + map.denominator.y * d);
+}
+
+fn device_depth(map: DepthMap, z: f32) -> f32 {
+    return -(map.numerator.x + z * map.denominator.x) / (map.numerator.y + z * map.denominator.y);
+}
+
+// How many pixels a metre across the view spans at a point.
+fn pixels_per_metre(position: vec3<f32>) -> f32 {
+    let w = (view.clip_from_view * vec4(position, 1.0)).w;
+    return 0.5 * view.main_pass_viewport.w * abs(view.clip_from_view[1][1]) / max(abs(w), 1e-20);
+}
+
+fn has_front(layers: vec2<f32>) -> bool {
+    return layers.x > NO_FRONT;
+}
+
+fn has_back(layers: vec2<f32>) -> bool {
+    return layers.y > NO_BACK;
+}
+
+// The plane d = depth + slope · (pixel offset), as a unit normal in view space. A plane that is
+// affine over the screen is linear in clip space, whatever the projection (METHOD 4.2).
+fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> {
+    let per_ndc = slope * view.main_pass_viewport.zw * vec2(0.5, -0.5);
+    let clip_plane = vec4(-per_ndc, 1.0, dot(per_ndc, ndc) - depth);
+    let view_plane = clip_plane * view.clip_from_view;
+    return normalize(view_plane.xyz);
+}
+
+// Nearest of a pixel's samples; depths are never averaged across them.
+fn nearest_scene_depth(pixel: vec2<i32>) -> f32 {
+#ifdef MULTISAMPLED
+    var depth = 0.0;
+    for (var i = 0; i < i32(textureNumSamples(scene_depth)); i += 1) {
+        depth = max(depth, textureLoad(scene_depth, pixel, i));
+    }
+    return depth;
+#else
+    return textureLoad(scene_depth, pixel, 0);
+#endif
+}
+
+// Farthest of a pixel's samples: what is behind it is hidden in every one of them.
+fn farthest_scene_depth(pixel: vec2<i32>) -> f32 {
+#ifdef MULTISAMPLED
+    var depth = 1.0;
+    for (var i = 0; i < i32(textureNumSamples(scene_depth)); i += 1) {
+        depth = min(depth, textureLoad(scene_depth, pixel, i));
+    }
+    return depth;
+#else
+    return textureLoad(scene_depth, pixel, 0);
+#endif
+}
+
+// Unit vectors in two numbers in −1..=1 (octahedral mapping, Meyer et al. 2010).
+fn encode_normal(n: vec3<f32>) -> vec2<f32> {
+    let p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    let folded = (1.0 - abs(p.yx)) * select(vec2(-1.0), vec2(1.0), p >= vec2(0.0));
+    return select(folded, p, n.z >= 0.0);
+}
+
+fn decode_normal(e: vec2<f32>) -> vec3<f32> {
+    var n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    let t = max(-n.z, 0.0);
+    n = vec3(n.xy + select(vec2(t), vec2(-t), n.xy >= vec2(0.0)), n.z);
+    return normalize(n);
+}

@@ -1,0 +1,159 @@
+//! The textures of a body in a view.
+
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{
+            Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+            TextureView,
+        },
+        renderer::RenderDevice,
+        texture::{CachedTexture, TextureCache},
+    },
+};
+
+use super::{
+    plan::Plan,
+    smooth::SmoothSteps,
+    support::{FluidSupport, LAYER_FORMAT},
+};
+
+/// Front and back normals, octahedral, both towards the viewer.
+pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Radiance and transmission.
+pub(crate) const LIGHT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// The exit ray and the flags of a path.
+pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
+/// Layers and their slopes along x, between the two halves of a separable fit.
+pub(crate) const SLOPE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+/// Depths of the fallback's depth-only draws.
+pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
+
+/// What a body's passes draw into, all of the size of the view's target.
+///
+/// Layers hold (device depth of the front, −device depth of the back); (0, −2) is nothing. A
+/// front of exactly 1 means that the ray starts inside the liquid.
+pub struct Layers {
+    /// The bulk's layers as splatted; smoothing writes to the two in turn.
+    pub(crate) bulk: [CachedTexture; 2],
+    /// Which of the two holds the final layers.
+    pub(crate) smoothed: usize,
+    pub(crate) slopes: Option<CachedTexture>,
+    pub(crate) bulk_normals: CachedTexture,
+    pub(crate) spray: CachedTexture,
+    pub(crate) spray_normals: CachedTexture,
+    pub(crate) radiance: CachedTexture,
+    pub(crate) transmission: CachedTexture,
+    pub(crate) exits: CachedTexture,
+    /// Front and back, for adapters that cannot blend.
+    pub(crate) depths: Option<[CachedTexture; 2]>,
+}
+
+impl Layers {
+    pub(crate) fn new(
+        cache: &mut TextureCache,
+        device: &RenderDevice,
+        size: UVec2,
+        plan: &Plan,
+        steps: &SmoothSteps,
+        support: &FluidSupport,
+        placeholder: &CachedTexture,
+    ) -> Self {
+        let mut texture = |label, format| {
+            cache.get(
+                device,
+                TextureDescriptor {
+                    label: Some(label),
+                    size: Extent3d {
+                        width: size.x,
+                        height: size.y,
+                        depth_or_array_layers: 1,
+                    },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: TextureDimension::D2,
+                    format,
+                    usage: TextureUsages::RENDER_ATTACHMENT
+                        | TextureUsages::TEXTURE_BINDING
+                        | TextureUsages::COPY_SRC,
+                    view_formats: &[],
+                },
+            )
+        };
+        let mut class = |there: bool, label, normals| {
+            if there {
+                (
+                    texture(label, LAYER_FORMAT),
+                    texture(normals, NORMAL_FORMAT),
+                )
+            } else {
+                (placeholder.clone(), placeholder.clone())
+            }
+        };
+        let (bulk, bulk_normals) = class(plan.bulk, "fluid_bulk_layers", "fluid_bulk_normals");
+        let (spray, spray_normals) = class(plan.spray, "fluid_spray_layers", "fluid_spray_normals");
+        let other = if steps.is_empty() {
+            bulk.clone()
+        } else {
+            texture("fluid_bulk_layers_smoothed", LAYER_FORMAT)
+        };
+        Self {
+            bulk: [bulk, other],
+            smoothed: steps.last_target(),
+            slopes: steps
+                .needs_slopes()
+                .then(|| texture("fluid_bulk_slopes", SLOPE_FORMAT)),
+            bulk_normals,
+            spray,
+            spray_normals,
+            radiance: texture("fluid_radiance", LIGHT_FORMAT),
+            transmission: texture("fluid_transmission", LIGHT_FORMAT),
+            exits: texture("fluid_exits", EXIT_FORMAT),
+            depths: (!support.max_blend).then(|| {
+                [
+                    texture("fluid_front_depth", DEPTH_FORMAT),
+                    texture("fluid_back_depth", DEPTH_FORMAT),
+                ]
+            }),
+        }
+    }
+
+    /// The bulk's layers after smoothing.
+    pub fn bulk(&self) -> &Texture {
+        &self.bulk[self.smoothed].texture
+    }
+
+    /// The bulk's normals: front in rg, back in ba.
+    pub fn bulk_normals(&self) -> &Texture {
+        &self.bulk_normals.texture
+    }
+
+    /// The spray's layers.
+    pub fn spray(&self) -> &Texture {
+        &self.spray.texture
+    }
+
+    /// The spray's normals: front in rg, back in ba.
+    pub fn spray_normals(&self) -> &Texture {
+        &self.spray_normals.texture
+    }
+
+    /// What the liquid itself sends to the eye.
+    pub fn radiance(&self) -> &Texture {
+        &self.radiance.texture
+    }
+
+    /// What is left of the background's light.
+    pub fn transmission(&self) -> &Texture {
+        &self.transmission.texture
+    }
+
+    /// Exit rays and flags, as `pack_exit` in `refract.wgsl` lays them out.
+    pub fn exits(&self) -> &Texture {
+        &self.exits.texture
+    }
+
+    pub(crate) fn bulk_view(&self) -> &TextureView {
+        &self.bulk[self.smoothed].default_view
+    }
+}

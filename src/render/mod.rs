@@ -1,0 +1,147 @@
+//! Splats to picture: the passes, all ahead of Bevy's main pass but the last.
+
+mod bind_groups;
+mod bindings;
+mod bodies;
+mod bounds;
+mod composite;
+mod extract;
+mod gpu_types;
+mod layers;
+mod normals;
+mod plan;
+mod refract;
+mod scene_copy;
+mod smooth;
+mod splat;
+mod support;
+#[cfg(test)]
+mod tests;
+
+use bevy::{
+    asset::embedded_asset,
+    core_pipeline::{
+        Core3d, Core3dSystems,
+        core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
+    },
+    pbr::main_transmissive_pass_3d,
+    prelude::*,
+    render::{
+        GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        extract_component::ExtractComponentPlugin, render_resource::SpecializedRenderPipelines,
+        sync_component::SyncComponentPlugin,
+    },
+    shader::load_shader_library,
+};
+
+pub use self::{
+    bodies::{Body, ViewBodies},
+    extract::{ExtractedFluid, GpuSplats, ViewSurroundings},
+    gpu_types::SearchStatus,
+    layers::Layers,
+    plan::{Plan, PlanInput, plan},
+    support::LayerBlending,
+};
+use crate::{
+    particles::FluidParticles,
+    settings::{FluidDebugView, ScreenSpaceFluid},
+};
+
+/// Draws fluids. Added by [`FluidPlugin`](crate::FluidPlugin).
+pub(crate) struct FluidRenderPlugin {
+    pub(crate) layer_blending: LayerBlending,
+}
+
+impl Plugin for FluidRenderPlugin {
+    fn build(&self, app: &mut App) {
+        load_shader_library!(app, "types.wgsl");
+        load_shader_library!(app, "bindings.wgsl");
+        load_shader_library!(app, "functions.wgsl");
+        load_shader_library!(app, "optics.wgsl");
+        load_shader_library!(app, "splat/ellipsoid.wgsl");
+        load_shader_library!(app, "smooth/window.wgsl");
+        load_shader_library!(app, "refract/layers.wgsl");
+        load_shader_library!(app, "refract/search.wgsl");
+        embedded_asset!(app, "splat/splat.wgsl");
+        embedded_asset!(app, "splat/merge.wgsl");
+        embedded_asset!(app, "smooth/plane_fit.wgsl");
+        embedded_asset!(app, "smooth/plane_fit_tls.wgsl");
+        embedded_asset!(app, "smooth/bilateral.wgsl");
+        embedded_asset!(app, "normals/depth_normals.wgsl");
+        embedded_asset!(app, "normals/spray_normals.wgsl");
+        embedded_asset!(app, "refract/refract.wgsl");
+        embedded_asset!(app, "composite/composite.wgsl");
+        embedded_asset!(app, "composite/debug_view.wgsl");
+        app.add_plugins((
+            ExtractComponentPlugin::<ScreenSpaceFluid>::default(),
+            ExtractComponentPlugin::<FluidDebugView>::default(),
+            SyncComponentPlugin::<FluidParticles>::default(),
+        ));
+
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .insert_resource(support::WantedBlending(self.layer_blending))
+            .init_resource::<extract::FluidLights>()
+            .init_gpu_resource::<bodies::FluidUniforms>()
+            .init_gpu_resource::<SpecializedRenderPipelines<splat::SplatPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<smooth::SmoothPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<normals::NormalsPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<refract::RefractPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<composite::CompositePipeline>>()
+            .add_systems(
+                RenderStartup,
+                (
+                    support::init_support,
+                    scene_copy::init_placeholders,
+                    (splat::init_splat_pipeline, normals::init_normals_pipeline).chain(),
+                    smooth::init_smooth_pipeline,
+                    refract::init_refract_pipeline,
+                    composite::init_composite_pipeline,
+                ),
+            )
+            .add_systems(
+                ExtractSchedule,
+                (extract::extract_fluids, extract::extract_lights),
+            )
+            .add_systems(
+                Render,
+                (
+                    (
+                        extract::upload_splats,
+                        bodies::prepare_fluids,
+                        bodies::prepare_bodies,
+                    )
+                        .chain()
+                        .in_set(RenderSystems::PrepareResources)
+                        .after(bevy::render::view::prepare_view_uniforms),
+                    (
+                        bind_groups::prepare_splat_bind_groups,
+                        bind_groups::prepare_body_bind_groups,
+                    )
+                        .in_set(RenderSystems::PrepareBindGroups),
+                ),
+            )
+            // What makes the picture, in the order it is made.
+            .add_systems(
+                Core3d,
+                (
+                    (
+                        splat::splat,
+                        smooth::smooth,
+                        normals::normals,
+                        refract::refract,
+                    )
+                        .chain()
+                        .after(Core3dSystems::Prepass)
+                        .before(Core3dSystems::MainPass),
+                    composite::composite
+                        .in_set(Core3dSystems::MainPass)
+                        .after(main_opaque_pass_3d)
+                        .after(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d),
+                ),
+            );
+    }
+}

@@ -1,0 +1,94 @@
+// Light at an interface and beyond: Fresnel, refraction, highlights, the environment.
+#define_import_path bevy_fluid::render::optics
+
+#import bevy_fluid::render::bindings::{body, view}
+
+@group(1) @binding(0) var environment_map: texture_cube<f32>;
+@group(1) @binding(1) var environment_sampler: sampler;
+
+const PI: f32 = 3.14159265;
+
+// What is left of light after a path of some metres: Beer–Lambert, per channel.
+fn transmitted(path: f32) -> vec3<f32> {
+    return exp(-body.extinction * clamp(path, 0.0, 1e30));
+}
+
+// Exposed radiance from far away, along a direction in view space.
+fn environment(direction: vec3<f32>) -> vec3<f32> {
+    if body.environment_intensity <= 0.0 {
+        return body.clear_color;
+    }
+    let world = (view.world_from_view * vec4(direction, 0.0)).xyz;
+    let texel = textureSampleLevel(
+        environment_map, environment_sampler, body.environment_from_world * world, 0.0,
+    );
+    return texel.rgb * body.environment_intensity;
+}
+
+struct Interface {
+    reflectance: f32,
+    // Zero vector under total reflection.
+    refracted: vec3<f32>,
+    reflected: vec3<f32>,
+}
+
+// A ray meets an interface whose unit normal `n` faces it; `eta` is the refractive index on its
+// side over that beyond.
+fn meet(direction: vec3<f32>, n: vec3<f32>, eta: f32) -> Interface {
+    var out: Interface;
+    out.reflected = reflect(direction, n);
+    let ci = clamp(-dot(direction, n), 0.0, 1.0);
+    let st2 = eta * eta * (1.0 - ci * ci);
+    if st2 >= 1.0 {
+        out.reflectance = 1.0;
+        out.refracted = vec3(0.0);
+        return out;
+    }
+    let ct = sqrt(1.0 - st2);
+    out.refracted = normalize(eta * direction + (eta * ci - ct) * n);
+#ifdef SCHLICK
+    let r0 = (eta - 1.0) / (eta + 1.0);
+    // The angle on the thinner side: beyond it the approximation knows no total reflection.
+    let c = 1.0 - select(ct, ci, eta <= 1.0);
+    out.reflectance = r0 * r0 + (1.0 - r0 * r0) * c * c * c * c * c;
+#else
+    let s = (eta * ci - ct) / (eta * ci + ct);
+    let p = (eta * ct - ci) / (eta * ct + ci);
+    out.reflectance = 0.5 * (s * s + p * p);
+#endif
+    return out;
+}
+
+// A normal that faces the ray at least at a grazing angle. Interpolated normals near silhouettes
+// may not.
+fn facing(n: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let away = max(dot(n, direction) + 0.01, 0.0);
+    return normalize(n - away * direction);
+}
+
+// Highlights of the directional lights: GGX with the height-correlated Smith term, as in Bevy's
+// own materials, and the interface's Fresnel at the half vector.
+fn highlights(direction: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
+    var out = vec3(0.0);
+    let alpha = body.perceptual_roughness * body.perceptual_roughness;
+    let a2 = alpha * alpha;
+    let v = -direction;
+    let nov = max(dot(n, v), 1e-4);
+    for (var i = 0u; i < body.light_count; i += 1u) {
+        let light = body.lights[i];
+        let l = (view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz;
+        let nol = dot(n, l);
+        if nol <= 0.0 {
+            continue;
+        }
+        let h = normalize(v + l);
+        let noh = clamp(dot(n, h), 0.0, 1.0);
+        let f = noh * noh * (a2 - 1.0) + 1.0;
+        let d = a2 / (PI * f * f);
+        let smith = 0.5 / (nol * sqrt(nov * nov * (1.0 - a2) + a2)
+            + nov * sqrt(nol * nol * (1.0 - a2) + a2));
+        let fresnel = meet(-v, h, 1.0 / body.refractive_index).reflectance;
+        out += d * smith * fresnel * nol * light.illuminance;
+    }
+    return out * view.exposure;
+}

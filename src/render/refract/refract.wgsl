@@ -1,0 +1,231 @@
+// Traces each pixel's ray through up to four interfaces.
+
+#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::functions::{
+    Ray, device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
+    nearest_scene_depth, ndc_from_pixel, view_from_device, view_ray,
+}
+#import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
+#import bevy_fluid::render::refract::layers::{
+    BACK, BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal,
+}
+#import bevy_fluid::render::refract::search::{Found, Target, meets_scene, pixel_of, search}
+#import bevy_fluid::render::types::{
+    INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_NO_BRACKET, STATUS_OPAQUE,
+    STATUS_TOTAL_REFLECTION,
+}
+
+const INTERFACES: u32 = #{INTERFACES}u;
+
+struct Output {
+    // What the liquid itself sends: reflections and highlights.
+    @location(0) radiance: vec4<f32>,
+    // What is left of the background's light.
+    @location(1) transmission: vec4<f32>,
+    // Where to look for the background: see `pack_exit`.
+    @location(2) exit: vec4<u32>,
+}
+
+struct Path {
+    position: vec3<f32>,
+    direction: vec3<f32>,
+    radiance: vec3<f32>,
+    transmission: vec3<f32>,
+    class: u32,
+    first_class: u32,
+    interfaces: u32,
+    searches: u32,
+    // Four bits a search.
+    status: u32,
+    // The background is the scene at `position` itself.
+    direct: bool,
+}
+
+fn note(path: ptr<function, Path>, status: u32) {
+    (*path).status |= status << (4u * (*path).searches);
+    (*path).searches = min((*path).searches + 1u, 3u);
+}
+
+// Crosses an interface, or is totally reflected (false). `n` points out of the liquid.
+fn cross_interface(path: ptr<function, Path>, n: vec3<f32>, entering: bool) -> bool {
+    let d = (*path).direction;
+    let against = facing(select(-n, n, entering), d);
+    let eta = select(body.refractive_index, 1.0 / body.refractive_index, entering);
+    let at = meet(d, against, eta);
+    (*path).interfaces += 1u;
+    if at.reflectance >= 1.0 {
+        (*path).direction = at.reflected;
+        // From outside (index below 1) nothing gets in: what is seen is the reflection.
+        return false;
+    }
+    (*path).radiance += (*path).transmission * at.reflectance * environment(at.reflected);
+    (*path).transmission *= 1.0 - at.reflectance;
+    (*path).direction = at.refracted;
+    return true;
+}
+
+fn advance(path: ptr<function, Path>, t: f32) {
+    (*path).position += t * (*path).direction;
+}
+
+// Looks for opaque things up to `t`; if one is met the path ends there.
+fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
+    let met = meets_scene((*path).position, (*path).direction, t);
+    if met.status != STATUS_HIT {
+        return false;
+    }
+    advance(path, met.t);
+    if inside {
+        (*path).transmission *= transmitted(met.t);
+    }
+    (*path).direct = true;
+    note(path, STATUS_OPAQUE);
+    return true;
+}
+
+// The straight way through one class at its own pixel, cut short by opaque things.
+fn straight_length(class: u32, pixel: vec2<i32>, ndc: vec2<f32>, along: vec3<f32>) -> f32 {
+    let layers = load_layers(class, pixel);
+    if !has_front(layers) || !has_back(layers) {
+        return 0.0;
+    }
+    let back = max(-layers.y, nearest_scene_depth(pixel));
+    if back >= layers.x {
+        return 0.0;
+    }
+    let span = view_from_device(ndc, back) - view_from_device(ndc, layers.x);
+    return max(dot(span, along), 0.0);
+}
+
+// Follows the path inside and outside until the budget is spent or nothing more is met.
+fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
+    var both = false;
+    var may_enter = other;
+    for (var segment = 0u; segment < INTERFACES; segment += 1u) {
+        if (*path).interfaces >= INTERFACES {
+            return;
+        }
+        let found = search(
+            Target((*path).class, true, both, false), (*path).position, (*path).direction,
+        );
+        if found.status == STATUS_INVALID || found.status == STATUS_NO_BRACKET {
+            note(path, found.status);
+            return;
+        }
+        if stops(path, found.t, true) {
+            return;
+        }
+        (*path).transmission *= transmitted(found.t);
+        advance(path, found.t);
+        let n = layer_normal((*path).class, found.side, pixel_of((*path).position));
+        if !cross_interface(path, n, false) {
+            note(path, STATUS_TOTAL_REFLECTION);
+            both = true;
+            continue;
+        }
+        note(path, found.status);
+        if !may_enter || (*path).interfaces >= INTERFACES {
+            return;
+        }
+        may_enter = false;
+        let class = 1u - (*path).class;
+        let next = search(Target(class, false, false, false), (*path).position, (*path).direction);
+        if next.status != STATUS_HIT {
+            note(path, next.status);
+            return;
+        }
+        if stops(path, next.t, false) {
+            return;
+        }
+        note(path, STATUS_HIT);
+        advance(path, next.t);
+        (*path).class = class;
+        let entry = layer_normal(class, FRONT, pixel_of((*path).position));
+        if !cross_interface(path, entry, true) {
+            return;
+        }
+        both = false;
+    }
+}
+
+// (screen position, device depth, direction, flags): position as two 16-bit fractions of the
+// viewport, direction octahedral in view space. Flags: bits 0–15 search statuses, 16–18
+// interfaces met, 19 direct, 20 first class, 31 there is liquid.
+fn pack_exit(path: Path) -> vec4<u32> {
+    let device = device_from_view(path.position);
+    let uv = clamp(device.xy * vec2(0.5, -0.5) + 0.5, vec2(0.0), vec2(1.0));
+    let flags = path.status | (path.interfaces << 16u) | (select(0u, 1u, path.direct) << 19u)
+        | (path.first_class << 20u) | (1u << 31u);
+    return vec4(
+        pack2x16unorm(uv),
+        bitcast<u32>(device.z),
+        pack2x16snorm(encode_normal(path.direction)),
+        flags,
+    );
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> Output {
+    let pixel = vec2<i32>(position.xy);
+    let ndc = ndc_from_pixel(position.xy);
+    let bulk = load_layers(BULK, pixel);
+    let spray = load_layers(SPRAY, pixel);
+    let front = max(bulk.x, spray.x);
+    if front <= 0.0 || front < farthest_scene_depth(pixel) {
+        discard;
+    }
+    var path: Path;
+    path.first_class = select(SPRAY, BULK, bulk.x >= spray.x);
+    path.class = path.first_class;
+    path.transmission = vec3(1.0);
+    let ray = view_ray(ndc);
+    path.direction = ray.direction;
+    let starts_inside = front >= INSIDE_FRONT;
+    path.position = select(view_from_device(ndc, front), ray.origin, starts_inside);
+    let first_normal = load_normal(path.class, FRONT, pixel);
+
+#ifdef INDEX_ONE
+    path.direct = true;
+    let straight = straight_length(BULK, pixel, ndc, ray.direction)
+        + straight_length(SPRAY, pixel, ndc, ray.direction);
+    path.transmission = transmitted(straight);
+    path.interfaces = 0u;
+#else
+    if !starts_inside {
+        let n = facing(first_normal, ray.direction);
+        path.radiance = highlights(ray.direction, n);
+        let entered = cross_interface(&path, n, true);
+        if !entered {
+            // Total reflection outside: only the mirrored surroundings are seen.
+            path.radiance += environment(path.direction);
+            path.transmission = vec3(0.0);
+        }
+    }
+    if INTERFACES <= 1u {
+        // No search: the path is as long as the liquid is deep at this pixel.
+        let straight = straight_length(BULK, pixel, ndc, ray.direction)
+            + straight_length(SPRAY, pixel, ndc, ray.direction);
+        path.transmission *= transmitted(straight);
+        if INTERFACES == 0u {
+            path.direction = ray.direction;
+            path.direct = true;
+            path.interfaces = 0u;
+        } else {
+            advance(&path, straight);
+        }
+    } else {
+        let other = 1u - path.class;
+        trace(&path, starts_inside, has_front(load_layers(other, pixel)) || INTERFACES > 2u);
+    }
+#endif
+    if path.direct && INTERFACES <= 1u {
+        // Looked up at this very pixel.
+        path.position = view_from_device(ndc, front);
+    }
+
+    var out: Output;
+    out.radiance = vec4(path.radiance, 1.0);
+    out.transmission = vec4(path.transmission, 1.0);
+    out.exit = pack_exit(path);
+    return out;
+}

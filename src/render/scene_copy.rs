@@ -1,0 +1,94 @@
+//! Textures that stand in for what a body does not have, and the copy of the scene's colour.
+
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{
+            Extent3d, Sampler, SamplerDescriptor, FilterMode, AddressMode, TextureDataOrder,
+            TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+            TextureViewDescriptor, MipmapFilterMode,
+        },
+        renderer::{RenderDevice, RenderQueue},
+        texture::{CachedTexture, TextureCache},
+    },
+};
+
+use super::support::LAYER_FORMAT;
+
+/// Stand-ins.
+#[derive(Resource)]
+pub(crate) struct Placeholders {
+    /// One pixel of "nothing here".
+    pub(crate) layers: CachedTexture,
+    /// Smooth lookups that stop at the border.
+    pub(crate) sampler: Sampler,
+}
+
+pub(crate) fn init_placeholders(
+    mut commands: Commands,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    let nothing = [0.0f32, -2.0];
+    let texture = device.create_texture_with_data(
+        &queue,
+        &TextureDescriptor {
+            label: Some("fluid_no_layers"),
+            size: Extent3d {
+                width: 1,
+                height: 1,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: LAYER_FORMAT,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        },
+        TextureDataOrder::default(),
+        bytemuck::cast_slice(&nothing),
+    );
+    let default_view = texture.create_view(&TextureViewDescriptor::default());
+    commands.insert_resource(Placeholders {
+        layers: CachedTexture {
+            texture,
+            default_view,
+        },
+        sampler: device.create_sampler(&SamplerDescriptor {
+            label: Some("fluid_smooth_sampler"),
+            address_mode_u: AddressMode::ClampToEdge,
+            address_mode_v: AddressMode::ClampToEdge,
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            mipmap_filter: MipmapFilterMode::Linear,
+            ..default()
+        }),
+    });
+}
+
+/// A texture to copy a view's colour to.
+pub(crate) fn scene_copy(
+    textures: &mut TextureCache,
+    device: &RenderDevice,
+    size: UVec2,
+    format: TextureFormat,
+) -> CachedTexture {
+    textures.get(
+        device,
+        TextureDescriptor {
+            label: Some("fluid_scene_color"),
+            size: Extent3d {
+                width: size.x,
+                height: size.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format,
+            usage: TextureUsages::COPY_DST | TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+    )
+}

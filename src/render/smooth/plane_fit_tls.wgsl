@@ -1,0 +1,144 @@
+// Planes fitted to points in view space by total least squares: thesis 4.3.
+
+#import bevy_fluid::render::functions::{
+    device_from_view, encode_normal, view_from_device, view_ray,
+}
+#import bevy_fluid::render::bindings::view
+#import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
+
+struct Output {
+    @location(0) layers: vec4<f32>,
+#ifdef NORMALS
+    @location(1) normals: vec4<f32>,
+#endif
+}
+
+// Weighted sums of points and of their products, about the centre pixel's point.
+struct Moments {
+    count: f32,
+    weight: f32,
+    mean: vec3<f32>,
+    // xx, yy, zz and xy, yz, zx.
+    squares: vec3<f32>,
+    products: vec3<f32>,
+}
+
+fn add(m: ptr<function, Moments>, point: vec3<f32>, weight: f32) {
+    (*m).count += f32(weight > 0.0);
+    (*m).weight += weight;
+    (*m).mean += weight * point;
+    (*m).squares += weight * point * point;
+    (*m).products += weight * point * point.yzx;
+}
+
+// One Jacobi rotation in the plane of axes p and q; `app`, `aqq`, `apq` of the matrix, `arp` and
+// `arq` its products with the third axis.
+fn rotate(
+    app: ptr<function, f32>, aqq: ptr<function, f32>, apq: ptr<function, f32>,
+    arp: ptr<function, f32>, arq: ptr<function, f32>,
+    vp: ptr<function, vec3<f32>>, vq: ptr<function, vec3<f32>>,
+) {
+    if abs(*apq) < 1e-20 {
+        return;
+    }
+    let theta = (*aqq - *app) / (2.0 * *apq);
+    let t = select(-1.0, 1.0, theta >= 0.0) / (abs(theta) + sqrt(theta * theta + 1.0));
+    let c = inverseSqrt(t * t + 1.0);
+    let s = t * c;
+    *app -= t * *apq;
+    *aqq += t * *apq;
+    *apq = 0.0;
+    let p = c * *arp - s * *arq;
+    *arq = s * *arp + c * *arq;
+    *arp = p;
+    let v = c * *vp - s * *vq;
+    *vq = s * *vp + c * *vq;
+    *vp = v;
+}
+
+// Unit eigenvector of the smallest eigenvalue of a symmetric matrix: four cyclic Jacobi sweeps.
+fn smallest_eigenvector(diagonal: vec3<f32>, products: vec3<f32>) -> vec3<f32> {
+    let size = max(max(diagonal.x, max(diagonal.y, diagonal.z)), 1e-30);
+    var xx = diagonal.x / size;
+    var yy = diagonal.y / size;
+    var zz = diagonal.z / size;
+    var xy = products.x / size;
+    var yz = products.y / size;
+    var zx = products.z / size;
+    var vx = vec3(1.0, 0.0, 0.0);
+    var vy = vec3(0.0, 1.0, 0.0);
+    var vz = vec3(0.0, 0.0, 1.0);
+    for (var sweep = 0; sweep < 4; sweep += 1) {
+        rotate(&xx, &yy, &xy, &zx, &yz, &vx, &vy);
+        rotate(&yy, &zz, &yz, &xy, &zx, &vy, &vz);
+        rotate(&zz, &xx, &zx, &yz, &xy, &vz, &vx);
+    }
+    if zz <= xx && zz <= yy {
+        return vz;
+    }
+    return select(vy, vx, xx <= yy);
+}
+
+struct Plane {
+    good: bool,
+    // Device depth where the pixel's ray meets it.
+    depth: f32,
+    // Towards the viewer.
+    normal: vec3<f32>,
+}
+
+fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
+    let ray = view_ray(window.ndc);
+    var out: Plane;
+    let total = max(m.weight, 1e-20);
+    let mean = m.mean / total;
+    let diagonal = m.squares / total - mean * mean;
+    let products = m.products / total - mean * mean.yzx;
+    let n = smallest_eigenvector(diagonal, products);
+    let facing = dot(n, ray.direction);
+    out.normal = select(n, -n, facing > 0.0);
+    // A plane along the ray has no depth there.
+    out.good = m.count >= 3.0 && abs(facing) > 1e-4;
+    let t = dot(n, mean) / select(1.0, facing, out.good);
+    out.depth = device_from_view(origin + t * ray.direction).z;
+    return out;
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> Output {
+    let window = window_at(position.xy);
+    var out: Output;
+    out.layers = vec4(window.center.xy, 0.0, 0.0);
+    if !any(window.valid) {
+        return out;
+    }
+    let front_origin = view_from_device(window.ndc, window.center.x);
+    let back_origin = view_from_device(window.ndc, -window.center.y);
+    let ndc_per_pixel = vec2(2.0, -2.0) / view.main_pass_viewport.zw * f32(window.spacing);
+    var front: Moments;
+    var back: Moments;
+    for (var j = -#{HALF_TAPS}; j <= #{HALF_TAPS}; j += 1) {
+        for (var i = -#{HALF_TAPS}; i <= #{HALF_TAPS}; i += 1) {
+            let tap = tap_at(window, vec2(i, j), edge_weight(window, i) * edge_weight(window, j));
+            let ndc = window.ndc + vec2(f32(i), f32(j)) * ndc_per_pixel;
+            if tap.weight.x > 0.0 {
+                add(&front, view_from_device(ndc, tap.value.x) - front_origin, tap.weight.x);
+            }
+            if tap.weight.y > 0.0 {
+                add(&back, view_from_device(ndc, -tap.value.y) - back_origin, tap.weight.y);
+            }
+        }
+    }
+    let front_plane = fit(window, front, front_origin);
+    let back_plane = fit(window, back, back_origin);
+    let layers = accept(
+        window,
+        vec2(front_plane.depth, -back_plane.depth),
+        vec2(front_plane.good, back_plane.good),
+    );
+    out.layers = vec4(layers, 0.0, 0.0);
+#ifdef NORMALS
+    out.normals = vec4(encode_normal(front_plane.normal), encode_normal(back_plane.normal));
+#endif
+    return out;
+}

@@ -1,0 +1,91 @@
+// The window of a smoothing pass: taps spread over the projected particle radius.
+#define_import_path bevy_fluid::render::smooth::window
+
+#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::functions::{
+    DepthMap, depth_map, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
+    view_from_device,
+}
+#import bevy_fluid::render::types::INSIDE_FRONT
+
+@group(1) @binding(0) var layers: texture_2d<f32>;
+
+// Pixels between taps at the most: beyond it the window stops growing.
+const MAX_SPACING: i32 = 16;
+
+struct Window {
+    pixel: vec2<i32>,
+    ndc: vec2<f32>,
+    map: DepthMap,
+    // The centre's layers, which of them are there, and their view depths.
+    center: vec4<f32>,
+    valid: vec2<bool>,
+    depth: vec2<f32>,
+    spacing: i32,
+    // Half width in taps, fractional.
+    half_taps: f32,
+}
+
+struct Tap {
+    // The layers' values, and (rows of a separable fit) their slopes along x.
+    value: vec4<f32>,
+    // Of front and back; 0 where there is nothing, or too far off in depth.
+    weight: vec2<f32>,
+}
+
+fn valid_layers(value: vec2<f32>) -> vec2<bool> {
+    return vec2(has_front(value) && value.x < INSIDE_FRONT, has_back(value));
+}
+
+fn view_depths(map: DepthMap, value: vec2<f32>) -> vec2<f32> {
+    return vec2(view_depth(map, value.x), view_depth(map, -value.y));
+}
+
+fn window_at(position: vec2<f32>) -> Window {
+    var out: Window;
+    out.pixel = vec2<i32>(position);
+    out.ndc = ndc_from_pixel(position);
+    out.map = depth_map(out.ndc);
+    out.center = textureLoad(layers, out.pixel, 0);
+    out.valid = valid_layers(out.center.xy);
+    out.depth = view_depths(out.map, out.center.xy);
+    out.spacing = 1;
+    out.half_taps = f32(#{HALF_TAPS});
+    if body.window_radii > 0.0 {
+        let d = select(-out.center.y, out.center.x, out.valid.x);
+        let scale = pixels_per_metre(view_from_device(out.ndc, d));
+        let half_width = max(body.window_radii * body.radius * scale, 1.0);
+        out.spacing = clamp(i32(ceil(half_width / out.half_taps)), 1, MAX_SPACING);
+        out.half_taps = min(half_width / f32(out.spacing), out.half_taps);
+    }
+    return out;
+}
+
+// How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
+// window grows by a pixel.
+fn edge_weight(window: Window, tap: i32) -> f32 {
+    return clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
+}
+
+fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
+    let pixel = window.pixel + offset * window.spacing;
+    let low = vec2<i32>(view.main_pass_viewport.xy);
+    let high = low + vec2<i32>(view.main_pass_viewport.zw);
+    var out: Tap;
+    if edge <= 0.0 || any(pixel < low) || any(pixel >= high) {
+        return out;
+    }
+    out.value = textureLoad(layers, pixel, 0);
+    let apart = (view_depths(window.map, out.value.xy) - window.depth) / body.range;
+    let weight = edge * exp(-apart * apart);
+    out.weight = select(vec2(0.0), weight, window.valid & valid_layers(out.value.xy));
+    return out;
+}
+
+// The new layers, except where the fit went too far, was degenerate or there was nothing to fit.
+fn accept(window: Window, fitted: vec2<f32>, good: vec2<bool>) -> vec2<f32> {
+    let moved = abs(view_depths(window.map, fitted) - window.depth);
+    let near_enough = moved <= vec2(body.bound);
+    let in_range = vec2(fitted.x > 0.0 && fitted.x < INSIDE_FRONT, fitted.y < 0.0 && fitted.y >= -1.0);
+    return select(window.center.xy, fitted, window.valid & good & near_enough & in_range);
+}

@@ -1,0 +1,161 @@
+// Ellipsoids on screen: placed in view space, bounded tightly, met by rays.
+#define_import_path bevy_fluid::render::splat::ellipsoid
+
+#import bevy_fluid::render::bindings::view
+#import bevy_fluid::render::functions::{device_from_view, ndc_from_pixel, view_ray}
+#import bevy_fluid::render::types::{GpuFluid, INSIDE_FRONT, NO_BACK, NO_FRONT, Splat}
+
+@group(1) @binding(0) var<storage, read> splats: array<Splat>;
+@group(1) @binding(1) var<uniform> fluid: GpuFluid;
+
+struct EllipsoidVertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) center: vec3<f32>,
+    // Columns of the map from view space to the unit sphere.
+    @location(1) @interpolate(flat) inverse_x: vec3<f32>,
+    @location(2) @interpolate(flat) inverse_y: vec3<f32>,
+    @location(3) @interpolate(flat) inverse_z: vec3<f32>,
+}
+
+struct Intersection {
+    hit: bool,
+    // (front, −back) as the layers hold them.
+    layers: vec2<f32>,
+    // Outward, in view space; the front one is zero where the ray starts inside.
+    front_normal: vec3<f32>,
+    back_normal: vec3<f32>,
+}
+
+fn axes_matrix(splat: Splat) -> mat3x3<f32> {
+    let xx_xy = unpack2x16float(splat.axes.x);
+    let xz_yy = unpack2x16float(splat.axes.y);
+    let yz_zz = unpack2x16float(splat.axes.z);
+    return mat3x3(
+        vec3(xx_xy, xz_yy.x),
+        vec3(xx_xy.y, xz_yy.y, yz_zz.x),
+        vec3(xz_yy.x, yz_zz),
+    );
+}
+
+fn inverse3(m: mat3x3<f32>) -> mat3x3<f32> {
+    let r0 = cross(m[1], m[2]);
+    let r1 = cross(m[2], m[0]);
+    let r2 = cross(m[0], m[1]);
+    return transpose(mat3x3(r0, r1, r2)) * (1.0 / dot(r2, m[2]));
+}
+
+fn linear(m: mat4x4<f32>) -> mat3x3<f32> {
+    return mat3x3(m[0].xyz, m[1].xyz, m[2].xyz);
+}
+
+// Range of a/w over the part of the ellipsoid with w >= near; a and w are rows of the map from
+// the unit sphere to clip space. Tangents that touch it in front of `near` bound it, and so does
+// the slice at `near` (METHOD 3 for the tangents). Empty: (1, −1).
+fn bound(a: vec4<f32>, w: vec4<f32>, near: f32) -> vec2<f32> {
+    var range = vec2(1e30, -1e30);
+    let ww = dot(w.xyz, w.xyz) - w.w * w.w;
+    let aw = dot(a.xyz, w.xyz) - a.w * w.w;
+    let aa = dot(a.xyz, a.xyz) - a.w * a.w;
+    let disc = aw * aw - ww * aa;
+    if disc >= 0.0 && ww != 0.0 {
+        let root = sqrt(disc);
+        for (var i = 0; i < 2; i += 1) {
+            let k = (aw + select(root, -root, i == 0)) / ww;
+            let tangent = a - k * w;
+            let touch = -tangent.xyz * tangent.w / max(dot(tangent.xyz, tangent.xyz), 1e-30);
+            if dot(w, vec4(touch, 1.0)) >= near {
+                range = vec2(min(range.x, k), max(range.y, k));
+            }
+        }
+    }
+    let slope = length(w.xyz);
+    if slope > 0.0 {
+        let height = (near - w.w) / slope;
+        if abs(height) <= 1.0 {
+            let axis = w.xyz / slope;
+            let along = dot(a.xyz, axis);
+            let across = length(a.xyz - along * axis) * sqrt(1.0 - height * height);
+            let middle = a.w + height * along;
+            range = vec2(
+                min(range.x, (middle - across) / near),
+                max(range.y, (middle + across) / near),
+            );
+        }
+    }
+    return range;
+}
+
+// One corner of the quad that bounds a splat on screen. What cannot be seen collapses to a point.
+fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
+    let splat = splats[splat_index];
+    let view_linear = linear(view.view_from_world);
+    let local_linear = linear(fluid.world_from_local);
+    // Relative to the eye before rotating, so that a scene far from the origin keeps its digits.
+    let from_eye = local_linear * splat.center + (fluid.world_from_local[3].xyz - view.world_position);
+    let center = view_linear * from_eye;
+    let shape = view_linear * local_linear * axes_matrix(splat);
+    let inverse = inverse3(shape) * (1.0 / splat.scale);
+    let axes = shape * splat.scale;
+
+    let rows = transpose(view.clip_from_view);
+    let x = vec4(rows[0].xyz * axes, dot(rows[0], vec4(center, 1.0)));
+    let y = vec4(rows[1].xyz * axes, dot(rows[1], vec4(center, 1.0)));
+    let w = vec4(rows[3].xyz * axes, dot(rows[3], vec4(center, 1.0)));
+    let near_point = view.view_from_clip * vec4(0.0, 0.0, 1.0, 1.0);
+    let near = dot(rows[3], near_point / near_point.w);
+    let bound_x = bound(x, w, near * 0.999);
+    let bound_y = bound(y, w, near * 0.999);
+
+    var out: EllipsoidVertex;
+    let seen = bound_x.x <= bound_x.y && bound_y.x <= bound_y.y;
+    // A hair wider than the exact bound: rounding must not cut off a covered pixel centre.
+    let slack = 0.02 * 2.0 / view.main_pass_viewport.zw;
+    let low = max(vec2(bound_x.x, bound_y.x) - slack, vec2(-1.5));
+    let high = min(vec2(bound_x.y, bound_y.y) + slack, vec2(1.5));
+    let ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
+    out.position = select(vec4(2.0, 2.0, 0.5, 1.0), vec4(ndc, 0.5, 1.0), seen);
+    out.center = center;
+    out.inverse_x = inverse[0];
+    out.inverse_y = inverse[1];
+    out.inverse_z = inverse[2];
+    return out;
+}
+
+// Both crossings of a pixel's ray from one quadratic: Haines' form about the point of the ray
+// that is closest to the centre (METHOD 3).
+fn intersect(in: EllipsoidVertex) -> Intersection {
+    var out: Intersection;
+    let inverse = mat3x3(in.inverse_x, in.inverse_y, in.inverse_z);
+    let ray = view_ray(ndc_from_pixel(in.position.xy));
+    let closest = dot(in.center - ray.origin, ray.direction);
+    let o = inverse * (ray.origin + closest * ray.direction - in.center);
+    let d = inverse * ray.direction;
+    let a = dot(d, d);
+    let b = -dot(o, d);
+    let nearest = o + (b / a) * d;
+    let disc = 1.0 - dot(nearest, nearest);
+    let middle = closest + b / a;
+    let half_chord = sqrt(max(disc, 0.0) / a);
+    let t_front = middle - half_chord;
+    let t_back = middle + half_chord;
+    // Behind the near plane altogether, or not a number.
+    out.hit = disc >= 0.0 && t_back > 0.0;
+
+    let back = ray.origin + t_back * ray.direction;
+    let back_depth = device_from_view(back).z;
+    out.layers.y = -clamp(back_depth, 1e-30, 1.0);
+    out.back_normal = normalize(transpose(inverse) * (inverse * (back - in.center)));
+    if t_front > 0.0 {
+        let front = ray.origin + t_front * ray.direction;
+        let front_depth = device_from_view(front).z;
+        // Beyond an orthographic far plane.
+        out.hit = out.hit && front_depth > 0.0;
+        // Kept a step below INSIDE_FRONT, which has a meaning of its own.
+        out.layers.x = min(front_depth, 0.9999999);
+        out.front_normal = normalize(transpose(inverse) * (inverse * (front - in.center)));
+    } else {
+        out.layers.x = INSIDE_FRONT;
+        out.front_normal = vec3(0.0);
+    }
+    return out;
+}

@@ -1,0 +1,52 @@
+// Ellipsoids into the depth layers of their class.
+
+#import bevy_fluid::render::functions::{farthest_scene_depth, has_back}
+#import bevy_fluid::render::splat::ellipsoid::{EllipsoidVertex, intersect, place}
+#import bevy_fluid::render::types::NO_FRONT
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) corner: u32,
+    @builtin(instance_index) splat: u32,
+) -> EllipsoidVertex {
+    return place(splat, corner);
+}
+
+// A front behind the opaque scene is hidden and left out; the back stays, because rays that pass
+// the opaque thing on their bent way still have to find it.
+fn visible_front(front: f32, pixel: vec2<f32>) -> f32 {
+    return select(NO_FRONT, front, front >= farthest_scene_depth(vec2<i32>(pixel)));
+}
+
+#ifdef MAX_BLEND
+@fragment
+fn fragment(in: EllipsoidVertex) -> @location(0) vec2<f32> {
+    let found = intersect(in);
+    if !found.hit {
+        discard;
+    }
+    return vec2(visible_front(found.layers.x, in.position.xy), found.layers.y);
+}
+#endif
+
+#ifdef DEPTH_FRONT
+@fragment
+fn fragment(in: EllipsoidVertex) -> @builtin(frag_depth) f32 {
+    let found = intersect(in);
+    if !found.hit {
+        discard;
+    }
+    return visible_front(found.layers.x, in.position.xy);
+}
+#endif
+
+#ifdef DEPTH_BACK
+@fragment
+fn fragment(in: EllipsoidVertex) -> @builtin(frag_depth) f32 {
+    let found = intersect(in);
+    if !found.hit {
+        discard;
+    }
+    return -found.layers.y;
+}
+#endif

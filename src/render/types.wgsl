@@ -1,0 +1,66 @@
+#define_import_path bevy_fluid::render::types
+
+// An ellipsoid: center + scale · axes · u for |u| = 1, in the fluid's space.
+// `axes` holds six f16 of a symmetric matrix: xx, xy, xz, yy, yz, zz.
+struct Splat {
+    center: vec3<f32>,
+    scale: f32,
+    axes: vec3<u32>,
+    particle: u32,
+}
+
+// Where a fluid stands.
+struct GpuFluid {
+    world_from_local: mat4x4<f32>,
+}
+
+struct GpuDirectionalLight {
+    // World space, unit length.
+    direction_to_light: vec3<f32>,
+    // lx, times the light's colour.
+    illuminance: vec3<f32>,
+}
+
+// What a body looks like in a view.
+struct GpuBody {
+    // World to cubemap, handedness included.
+    environment_from_world: mat3x3<f32>,
+    // What is seen where there is no environment map.
+    clear_color: vec3<f32>,
+    // Turns texels of the environment map into the view's units; 0: there is none.
+    environment_intensity: f32,
+    // 1/m.
+    extinction: vec3<f32>,
+    refractive_index: f32,
+    lights: array<GpuDirectionalLight, 4>,
+    light_count: u32,
+    perceptual_roughness: f32,
+    // Particle radius in world units.
+    radius: f32,
+    // Smoothing: half window in particle radii; 0: in pixels, one per tap.
+    window_radii: f32,
+    // Smoothing: depth difference of weight exp(-1), world units.
+    range: f32,
+    // Smoothing: largest shift in depth, world units.
+    bound: f32,
+    // Search: evenly spaced samples before the bracket.
+    coarse_samples: u32,
+}
+
+// Depth layers hold (device depth of the front, −device depth of the back), so that one `max`
+// blend serves both. These stand for "nothing here".
+const NO_FRONT: f32 = 0.0;
+const NO_BACK: f32 = -2.0;
+// A front at the near plane: the ray starts inside the liquid.
+const INSIDE_FRONT: f32 = 1.0;
+
+// How a search ended.
+const STATUS_NONE: u32 = 0u;
+const STATUS_HIT: u32 = 1u;
+const STATUS_NO_BRACKET: u32 = 2u;
+const STATUS_LEFT_LAYER: u32 = 3u;
+const STATUS_INVALID: u32 = 4u;
+const STATUS_TOTAL_REFLECTION: u32 = 5u;
+const STATUS_BUDGET: u32 = 6u;
+// The ray met an opaque surface on its way.
+const STATUS_OPAQUE: u32 = 7u;

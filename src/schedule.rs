@@ -1,0 +1,29 @@
+//! The system sets a game can order its own systems against.
+
+use bevy::prelude::*;
+
+/// What happens to particles within a frame, in this order, in [`PostUpdate`].
+///
+/// A system that writes [`FluidParticles`](crate::FluidParticles) anywhere before
+/// [`FluidSystems::Shape`] sees its change on screen in the same frame.
+#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
+pub enum FluidSystems {
+    /// Particles are created and destroyed.
+    Emit,
+    /// Particles move.
+    Simulate,
+    /// Changed particles are classified and turned into splats.
+    Shape,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.configure_sets(
+        PostUpdate,
+        (
+            FluidSystems::Emit,
+            FluidSystems::Simulate,
+            FluidSystems::Shape,
+        )
+            .chain(),
+    );
+}

@@ -1,0 +1,258 @@
+//! How a camera draws fluids.
+
+use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
+
+/// Makes a camera draw particle fluids.
+///
+/// The defaults are a good picture at a moderate price; [`ScreenSpaceFluid::FAST`] and
+/// [`ScreenSpaceFluid::THESIS`] are other points on that scale.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[require(DepthPrepass, Hdr)]
+pub struct ScreenSpaceFluid {
+    /// How the bumps of single particles are removed from the bulk. Default:
+    /// [`PlaneFit::DEFAULT`].
+    pub smoothing: Smoothing,
+    /// How many interfaces a ray may cross. Default: four. More: liquid behind liquid, and total
+    /// reflection inside, look right; each costs a search.
+    pub refractions: Refractions,
+    /// How the next interface is found. Default: [`Search::BRACKETED`].
+    pub search: Search,
+    /// How much light an interface reflects. Default: exact.
+    pub fresnel: Fresnel,
+}
+
+impl ScreenSpaceFluid {
+    /// One refraction over separably smoothed depth.
+    pub const FAST: Self = Self {
+        refractions: Refractions::One,
+        ..Self::DEFAULT
+    };
+
+    /// The default.
+    pub const DEFAULT: Self = Self {
+        smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),
+        refractions: Refractions::Four,
+        search: Search::BRACKETED,
+        fresnel: Fresnel::Exact,
+    };
+
+    /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.
+    pub const THESIS: Self = Self {
+        smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
+        refractions: Refractions::Four,
+        search: Search::Secant,
+        fresnel: Fresnel::Schlick,
+    };
+}
+
+impl Default for ScreenSpaceFluid {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// How many interfaces between liquid and air a ray may cross (or be totally reflected at).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Refractions {
+    /// Nothing is bent: reflection and absorption along the straight line only.
+    Zero,
+    /// Only the first surface bends; absorption along the bent ray.
+    One,
+    /// Into one body and out of it.
+    Two,
+    /// Into one body, out of it, into the other class (spray behind bulk, bulk behind spray) and
+    /// out of that.
+    #[default]
+    Four,
+}
+
+impl Refractions {
+    /// The number of interfaces.
+    pub const fn count(self) -> u32 {
+        match self {
+            Self::Zero => 0,
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+        }
+    }
+}
+
+/// How the next interface along a ray is found in a depth layer (METHOD: section 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Search {
+    /// The thesis's secant (3.12), halving the distance while a sample is invalid.
+    Secant,
+    /// An expanding bracket, then Anderson–Björck steps; at most eight evaluations.
+    Bracketed {
+        /// Evenly spaced samples taken first, to find the first of several crossings.
+        /// Range 0..=32, default 0. More: fewer wrong crossings at steps in depth.
+        coarse_samples: u32,
+    },
+}
+
+impl Search {
+    /// The default: bracketed, without coarse samples.
+    pub const BRACKETED: Self = Self::Bracketed { coarse_samples: 0 };
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self::BRACKETED
+    }
+}
+
+/// How much of the light an interface reflects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Fresnel {
+    /// The dielectric equations for unpolarised light.
+    #[default]
+    Exact,
+    /// Schlick's approximation; inside with the angle outside. Up to 0.06 off for water.
+    Schlick,
+}
+
+/// How the bulk's depth layers are smoothed. Spray never is.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Smoothing {
+    /// Not at all.
+    None,
+    /// A plane is fitted to the window around each pixel (thesis 4.3).
+    PlaneFit(PlaneFit),
+    /// A bilateral filter of view depth (thesis 3.2, the earlier method).
+    Bilateral(Bilateral),
+}
+
+impl Default for Smoothing {
+    fn default() -> Self {
+        Self::PlaneFit(PlaneFit::DEFAULT)
+    }
+}
+
+/// The half width of a smoothing window.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Clone, PartialEq)]
+pub enum Window {
+    /// So many particle radii as they appear on screen, whatever the distance: taps spread out
+    /// for near particles and fall away for far ones. Range 0.2..=2.
+    Radii(f32),
+    /// As many pixels as there are taps, as the papers have it.
+    Pixels,
+}
+
+/// Smoothing by a local plane (thesis 4.3; METHOD 4.1 and 4.2).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct PlaneFit {
+    /// Which fit.
+    pub form: PlaneFitForm,
+    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 4.
+    /// More: smoother between taps, at a linear (separable) or quadratic price.
+    pub half_taps: u32,
+    /// How often the fit is repeated. Range 1..=8, default 3. More: smoother.
+    pub iterations: u32,
+    /// How large the window is. Default 0.65 radii. Larger: smoother, less detail.
+    pub window: Window,
+    /// Depth difference at which a tap counts exp(-1). Unit: particle radii, range 0.5..=4,
+    /// default 2. Higher: smoother, but steps in depth begin to leak into each other.
+    pub range: f32,
+    /// How far the fit may move a pixel before the old depth is kept. Unit: particle radii,
+    /// range 0.1.., default 2.
+    pub bound: f32,
+}
+
+impl PlaneFit {
+    /// Rows, then columns, in device depth.
+    pub const DEFAULT: Self = Self {
+        form: PlaneFitForm::Separable,
+        half_taps: 4,
+        iterations: 3,
+        window: Window::Radii(0.65),
+        range: 2.0,
+        bound: 2.0,
+    };
+
+    /// As published: total least squares over 9×9 pixels, three times.
+    pub const THESIS: Self = Self {
+        form: PlaneFitForm::TotalLeastSquares,
+        window: Window::Pixels,
+        ..Self::DEFAULT
+    };
+}
+
+impl Default for PlaneFit {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// What a plane fit minimises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum PlaneFitForm {
+    /// Distances to the plane in view space; the normal is an eigenvector (thesis 4.3).
+    TotalLeastSquares,
+    /// Device depth, which is affine over the pixels of a plane for every projection: a linear
+    /// regression over the whole window.
+    DeviceDepth,
+    /// The same, first along rows, then along columns.
+    #[default]
+    Separable,
+}
+
+/// Bilateral smoothing (thesis 3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct Bilateral {
+    /// Taps to each side of the centre. Range 1..=8, default 3.
+    pub half_taps: u32,
+    /// How often the filter is repeated. Range 1..=64, default 22.
+    pub iterations: u32,
+    /// How large the window is. Default: as many pixels as taps, as published.
+    pub window: Window,
+    /// σ₂ in particle radii. Range 0.5..=4, default 2√2.
+    pub range: f32,
+}
+
+impl Bilateral {
+    /// As published: 7×7, 22 times.
+    pub const THESIS: Self = Self {
+        half_taps: 3,
+        iterations: 22,
+        window: Window::Pixels,
+        range: 2.0 * core::f32::consts::SQRT_2,
+    };
+}
+
+impl Default for Bilateral {
+    fn default() -> Self {
+        Self::THESIS
+    }
+}
+
+/// Shows an intermediate result of a camera with [`ScreenSpaceFluid`] in place of the liquid.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Component, Clone, PartialEq)]
+pub enum FluidDebugView {
+    /// Depth of the bulk's front layer, near is bright.
+    BulkFront,
+    /// Depth of the bulk's back layer.
+    BulkBack,
+    /// Depth of the spray's front layer.
+    SprayFront,
+    /// Depth of the spray's back layer.
+    SprayBack,
+    /// The first interface's normal in view space, −1..=1 shown as 0..=1.
+    Normals,
+    /// How many interfaces each ray met: 0 black, 1 blue, 2 green, 3 yellow, 4 red.
+    Interfaces,
+    /// How the searches ended: green all hit, others see `SearchStatus` in `types.wgsl`.
+    Status,
+    /// Bulk blue, spray orange.
+    Classes,
+}

@@ -1,0 +1,226 @@
+//! Neighbourhoods → ellipsoids (Yu & Turk 2013, sections 4 and 5; thesis 4.1).
+
+use std::{array, ops::Range};
+
+use bevy::math::Vec3;
+use half::{f16, slice::HalfFloatSliceExt};
+use wide::f32x8;
+
+use super::{
+    CHUNK, Splat, SurfaceKernel,
+    classify::{Class, Classes},
+    eigen::{Eigen, eigen},
+    grid::Grid,
+    neighborhood::Neighborhood,
+};
+
+/// Ellipsoids made at a time.
+const LANES: usize = 8;
+
+/// Trace of the covariance, in R², up to which the neighbours count as one point, which
+/// gives no direction, and from which they count as spread out.
+const SPREAD: [f32; 2] = [1e-4, 1e-3];
+
+/// f16 rounds the axes by up to 1/2048 and the bounding box must hold them.
+const BOX_MARGIN: f32 = 1.001;
+
+/// Corners of a bounding box.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Self = Self {
+        min: Vec3::MAX,
+        max: Vec3::MIN,
+    };
+
+    fn around(center: Vec3, half_size: Vec3) -> Self {
+        Self {
+            min: center - half_size,
+            max: center + half_size,
+        }
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+}
+
+/// What the splats are made of.
+pub(super) struct Splatting<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) neighborhoods: &'a [Neighborhood],
+    pub(super) classes: &'a Classes,
+    pub(super) kernel: &'a SurfaceKernel,
+    pub(super) radius: f32,
+}
+
+impl Splatting<'_> {
+    /// Makes the splats of the chunks into one slice per class and returns their bounds.
+    ///
+    /// The halves run in parallel; what goes where depends on the counts alone, so any
+    /// number of threads gives the same splats.
+    pub(super) fn splat(&self, chunks: Range<usize>, out: [&mut [Splat]; 3]) -> Bounds {
+        match chunks.len() {
+            0 => return Bounds::EMPTY,
+            1 => return self.splat_chunk(chunks.start, out),
+            _ => {}
+        }
+        let middle = chunks.start + chunks.len() / 2;
+        let mut sizes = [0; 3];
+        for counts in &self.classes.counts[chunks.start..middle] {
+            sizes = array::from_fn(|class| sizes[class] + counts[class]);
+        }
+        let [bulk, interior, spray] = out;
+        let (bulk, rest_bulk) = bulk.split_at_mut(sizes[0]);
+        let (interior, rest_interior) = interior.split_at_mut(sizes[1]);
+        let (spray, rest_spray) = spray.split_at_mut(sizes[2]);
+        let (left, right) = rayon::join(
+            || self.splat(chunks.start..middle, [bulk, interior, spray]),
+            || self.splat(middle..chunks.end, [rest_bulk, rest_interior, rest_spray]),
+        );
+        left.union(right)
+    }
+
+    fn splat_chunk(&self, chunk: usize, out: [&mut [Splat]; 3]) -> Bounds {
+        let first = chunk * CHUNK;
+        let classes = &self.classes.of[first..self.grid.len().min(first + CHUNK)];
+        let mut out = out.map(|splats| splats.iter_mut());
+        let mut bounds = Bounds::EMPTY;
+        let mut batch = Batch::default();
+        for (sorted, &class) in (first..).zip(classes) {
+            let out = &mut out[class as usize];
+            let interior_radius = self.kernel.radius_scale * self.radius;
+            let radius = match class {
+                Class::Bulk if self.kernel.anisotropic => {
+                    if batch.push(sorted) {
+                        bounds = bounds.union(self.ellipsoids(&mut batch, out));
+                    }
+                    continue;
+                }
+                Class::Interior if self.kernel.anisotropic => interior_radius,
+                _ => self.radius,
+            };
+            let center = self.grid.position(sorted);
+            bounds = bounds.union(Bounds::around(center, Vec3::splat(radius * BOX_MARGIN)));
+            if let Some(splat) = out.next() {
+                *splat = Splat::sphere(center, radius, self.grid.order[sorted]);
+            }
+        }
+        bounds.union(self.ellipsoids(&mut batch, &mut out[Class::Bulk as usize]))
+    }
+
+    /// Makes an ellipsoid of every particle of the batch and empties it.
+    fn ellipsoids<'s>(
+        &self,
+        batch: &mut Batch,
+        out: &mut impl Iterator<Item = &'s mut Splat>,
+    ) -> Bounds {
+        let lanes = |value: &dyn Fn(&Neighborhood) -> f32| {
+            f32x8::new(batch.particles.map(|sorted| value(&self.neighborhoods[sorted])))
+        };
+        let covariance = array::from_fn(|entry| lanes(&|n| n.covariance[entry]));
+        let blend = self.blend(
+            lanes(&|n| n.count),
+            covariance[0] + covariance[3] + covariance[5],
+        );
+        let (axes, scale) = self.axes(covariance, blend);
+        let shift = blend * f32x8::splat(self.kernel.center_shift * self.reach());
+
+        let mut flat = [0.0; 6 * LANES];
+        for (entry, values) in axes.iter().enumerate() {
+            for (lane, value) in values.to_array().into_iter().enumerate() {
+                flat[lane * 6 + entry] = value;
+            }
+        }
+        let mut halves = [f16::ZERO; 6 * LANES];
+        halves.convert_from_f32_slice(&flat);
+
+        let scale = scale.to_array();
+        let shift = shift.to_array();
+        let mut bounds = Bounds::EMPTY;
+        let particles = &batch.particles[..batch.len];
+        for (lane, (&sorted, splat)) in particles.iter().zip(out).enumerate() {
+            let mean = Vec3::from(self.neighborhoods[sorted].mean);
+            let center = self.grid.position(sorted) + mean * shift[lane];
+            let [xx, xy, xz, yy, yz, zz] = array::from_fn(|entry| flat[lane * 6 + entry]);
+            let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+            let half_size = Vec3::from(rows.map(|row| Vec3::from(row).length()));
+            let half_size = half_size * (scale[lane] * BOX_MARGIN);
+            bounds = bounds.union(Bounds::around(center, half_size));
+            *splat = Splat {
+                center: center.to_array(),
+                scale: scale[lane],
+                axes: array::from_fn(|entry| halves[lane * 6 + entry]),
+                particle: self.grid.order[sorted],
+            };
+        }
+        batch.len = 0;
+        bounds
+    }
+
+    /// How much of the anisotropy shows: 0 is the sphere at the particle.
+    fn blend(&self, count: f32x8, trace: f32x8) -> f32x8 {
+        let [sphere, full] = [self.kernel.sphere_neighbors, self.kernel.full_neighbors];
+        let width = full.saturating_sub(sphere).max(1);
+        smoothstep(sphere as f32, width as f32, count)
+            * smoothstep(SPREAD[0], SPREAD[1] - SPREAD[0], trace)
+    }
+
+    /// Symmetric matrices with a largest eigenvalue of 1, and the largest semi-axis (m).
+    fn axes(&self, covariance: [f32x8; 6], blend: f32x8) -> ([f32x8; 6], f32x8) {
+        let Eigen { values, vectors } = eigen(covariance);
+        let largest = values[0].fast_max(values[1]).fast_max(values[2]);
+        let per_largest = f32x8::ONE / largest.fast_max(f32x8::splat(f32::MIN_POSITIVE));
+        let least = f32x8::splat(1.0 / self.kernel.max_ratio);
+        // The eigenvalues themselves, not their roots, and from the sphere by the blend.
+        let semi_axes = values.map(|value| {
+            let clamped = (value * per_largest).fast_max(least);
+            f32x8::ONE - blend + blend * clamped
+        });
+        let mut axes = [f32x8::ZERO; 6];
+        for (length, [x, y, z]) in semi_axes.into_iter().zip(vectors) {
+            let [lx, ly, lz] = [length * x, length * y, length * z];
+            let outer = [lx * x, lx * y, lx * z, ly * y, ly * z, lz * z];
+            axes = array::from_fn(|entry| axes[entry] + outer[entry]);
+        }
+        let [a, b, c] = semi_axes;
+        let growth = f32x8::splat(self.kernel.radius_scale - 1.0);
+        let radius = f32x8::splat(self.radius) * (f32x8::ONE + blend * growth);
+        (axes, radius / (a * b * c).cbrt())
+    }
+
+    fn reach(&self) -> f32 {
+        self.kernel.neighbor_radius * self.radius
+    }
+}
+
+/// 0 up to `start`, 1 from `start` + `width`, and smooth in between.
+fn smoothstep(start: f32, width: f32, value: f32x8) -> f32x8 {
+    let t = (value - f32x8::splat(start)) * f32x8::splat(1.0 / width);
+    let t = t.fast_max(f32x8::ZERO).fast_min(f32x8::ONE);
+    t * t * (f32x8::splat(3.0) - t - t)
+}
+
+/// Bulk particles that wait until there are enough to fill the lanes.
+#[derive(Default)]
+struct Batch {
+    /// Sorted particles; those beyond `len` are left from before and only fill lanes.
+    particles: [usize; LANES],
+    len: usize,
+}
+
+impl Batch {
+    /// Adds a particle; true if the batch is full now.
+    fn push(&mut self, sorted: usize) -> bool {
+        self.particles[self.len] = sorted;
+        self.len += 1;
+        self.len == LANES
+    }
+}

@@ -1,0 +1,131 @@
+//! Bulk, interior or spray (thesis 4.2; the interior is our addition).
+
+use std::f32::consts::PI;
+
+use rayon::prelude::*;
+
+use super::{CHUNK, SurfaceKernel, candidates::Candidates, grid::Grid, neighborhood::Neighborhood};
+
+/// What a particle belongs to, in the order of the splats.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Class {
+    /// The body of the liquid, up to its surface.
+    #[default]
+    Bulk,
+    /// Bulk too deep for any surface to pass through.
+    Interior,
+    /// Droplets.
+    Spray,
+}
+
+/// Part of the neighbours at rest that a full neighbourhood has at least.
+const FULL_COUNT: f32 = 0.75;
+/// Largest weighted mean of a full neighbourhood, in R. At a flat surface it is 0.2 to 0.3.
+const FULL_MEAN: f32 = 0.1;
+/// Smallest trace of the covariance of a full neighbourhood, in R²; a full ball has 0.45.
+const FULL_TRACE: f32 = 0.36;
+/// Largest anisotropy of a full neighbourhood.
+const FULL_ANISOTROPY: f32 = 0.15;
+/// Thickness that a neighbourhood that is not full adds to the shell, in radii: one and a
+/// half spacings. One spacing below a surface neighbourhoods can already be full, so this
+/// leaves a shell of two.
+const SHELL: f32 = 3.5;
+
+/// Classes of the sorted particles.
+#[derive(Default)]
+pub(super) struct Classes {
+    pub(super) of: Vec<Class>,
+    /// Particles of every class, by chunk.
+    pub(super) counts: Vec<[usize; 3]>,
+    /// Whether the neighbourhood is full and balanced on all sides.
+    full: Vec<bool>,
+}
+
+impl Classes {
+    pub(super) fn classify(
+        &mut self,
+        grid: &Grid,
+        neighborhoods: &[Neighborhood],
+        kernel: &SurfaceKernel,
+        radius: f32,
+    ) {
+        self.find_full(neighborhoods, kernel);
+        self.of.resize(grid.len(), Class::Bulk);
+        self.counts.resize(grid.len().div_ceil(CHUNK), [0; 3]);
+        let full = &self.full;
+        let shell = SHELL.min(kernel.neighbor_radius) * radius;
+        self.of
+            .par_chunks_mut(CHUNK)
+            .zip(&mut self.counts)
+            .zip(neighborhoods.par_chunks(CHUNK))
+            .enumerate()
+            .for_each(|(chunk, ((classes, counts), neighborhoods))| {
+                for (class, neighborhood) in classes.iter_mut().zip(neighborhoods) {
+                    let spray = neighborhood.count < kernel.spray_threshold as f32;
+                    *class = if spray { Class::Spray } else { Class::Bulk };
+                }
+                if kernel.skip_interior {
+                    mark_interior(grid, full, shell, chunk * CHUNK, classes);
+                }
+                *counts = [0; 3];
+                for &class in &*classes {
+                    counts[class as usize] += 1;
+                }
+            });
+    }
+
+    /// Particles of every class.
+    pub(super) fn totals(&self) -> [usize; 3] {
+        let sum = |class| self.counts.iter().map(|counts| counts[class]).sum();
+        [sum(0), sum(1), sum(2)]
+    }
+
+    /// Address and capacity of every buffer.
+    #[cfg(test)]
+    pub(super) fn buffers(&self) -> Vec<(usize, usize)> {
+        vec![
+            (self.of.as_ptr().addr(), self.of.capacity()),
+            (self.counts.as_ptr().addr(), self.counts.capacity()),
+            (self.full.as_ptr().addr(), self.full.capacity()),
+        ]
+    }
+
+    fn find_full(&mut self, neighborhoods: &[Neighborhood], kernel: &SurfaceKernel) {
+        self.full.resize(neighborhoods.len(), false);
+        let at_rest = PI / 6.0 * kernel.neighbor_radius.powi(3) - 1.0;
+        self.full
+            .par_chunks_mut(CHUNK)
+            .zip(neighborhoods.par_chunks(CHUNK))
+            .for_each(|(full, neighborhoods)| {
+                for (full, neighborhood) in full.iter_mut().zip(neighborhoods) {
+                    let mean = neighborhood.mean.map(|a| a * a).iter().sum::<f32>();
+                    *full = neighborhood.count >= FULL_COUNT * at_rest
+                        && mean <= FULL_MEAN * FULL_MEAN
+                        && neighborhood.trace() >= FULL_TRACE
+                        && neighborhood.anisotropy_squared() <= FULL_ANISOTROPY * FULL_ANISOTROPY;
+                }
+            });
+    }
+}
+
+/// Makes the particles interior whose neighbours within `shell` (m) are all full, as they
+/// are themselves.
+fn mark_interior(grid: &Grid, full: &[bool], shell: f32, first: usize, classes: &mut [Class]) {
+    let mut surface = Candidates::new(shell);
+    for group in grid.groups(first..first + classes.len()) {
+        if !full[group.particles.clone()].contains(&true) {
+            continue;
+        }
+        surface.gather(grid, &group, Some(full));
+        // A sample could miss the surface.
+        if surface.sampled() {
+            continue;
+        }
+        for sorted in group.particles {
+            let class = &mut classes[sorted - first];
+            if full[sorted] && *class == Class::Bulk && !surface.any_near(grid.position(sorted)) {
+                *class = Class::Interior;
+            }
+        }
+    }
+}

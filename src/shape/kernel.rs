@@ -1,0 +1,123 @@
+//! What a user sets about the shape of the splats.
+
+use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault};
+
+use super::ShapeError;
+
+/// How the particles of one fluid are classified and shaped into ellipsoids.
+///
+/// The lengths are in particle radii, so one kernel serves a scene of any scale.
+/// The defaults suit particles about two radii apart, as SPH keeps them at rest.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default, Clone)]
+pub struct SurfaceKernel {
+    /// Distance within which particles are neighbours (R = 2h in the papers).
+    ///
+    /// Unit: particle radii. Range: 1 to 10. Default: 4, which is 32 neighbours at rest.
+    /// Higher: smoother shapes, at a cost that grows with the cube.
+    /// Lower: every particle keeps more of its own bump; below 3 most are spray.
+    pub neighbor_radius: f32,
+
+    /// Number of neighbours below which a particle is spray instead of bulk.
+    ///
+    /// Unit: particles. Range: any; 0 makes every particle bulk. Default: 8.
+    /// Higher: thin sheets and threads come apart into droplets.
+    /// Lower: droplets join the bulk and are smoothed with it.
+    pub spray_threshold: u32,
+
+    /// Whether splats are stretched and shifted to follow the surface.
+    ///
+    /// Default: true. False: every splat is a sphere of the particle's radius at the
+    /// particle's position; the classes stay as they are.
+    pub anisotropic: bool,
+
+    /// How far a splat moves towards the mean of its neighbours (λ of Yu & Turk).
+    ///
+    /// Unit: none. Range: 0 to 1. Default: 0.9.
+    /// Higher: a smoother surface, which also sinks, by up to 2.7 radii where it is flat.
+    /// Lower: the particles show through as bumps.
+    pub center_shift: f32,
+
+    /// Longest axis of an ellipsoid over its shortest (k_r of Yu & Turk).
+    ///
+    /// Unit: none. Range: 1 to 16. Default: 4.
+    /// Higher: flatter discs, which tile a surface better and stick out more at corners.
+    /// Lower: rounder splats; 1 makes spheres of all, still shifted and scaled.
+    pub max_ratio: f32,
+
+    /// Radius of the sphere that has the volume of a fully anisotropic splat.
+    ///
+    /// Unit: particle radii. Range: 0.1 to 10. Default: 1.24, the volume (2r)³ that a
+    /// particle fills at rest.
+    /// Higher: neighbours overlap more and holes close, the liquid swells.
+    /// Lower: the liquid shrinks and holes open.
+    pub radius_scale: f32,
+
+    /// Number of neighbours up to which a splat is the unshifted sphere of radius r.
+    ///
+    /// Unit: particles. Range: any up to `full_neighbors`. Default: 8, as `spray_threshold`,
+    /// so that a particle does not pop when it turns from bulk to spray.
+    /// Higher: sparse regions stay spheres. Lower: they stretch.
+    pub sphere_neighbors: u32,
+
+    /// Number of neighbours from which a splat is fully anisotropic.
+    ///
+    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (N_ε = 25 in the
+    /// paper, for a wider R). Shape, shift and scale blend smoothly in between.
+    /// Higher: a longer blend. Lower: a shorter one, and visible pops where it is short.
+    pub full_neighbors: u32,
+
+    /// Whether to tell apart the particles too deep inside to be seen.
+    ///
+    /// Default: true: they are counted as interior and cost no eigen-solve. False: they are bulk.
+    pub skip_interior: bool,
+}
+
+impl Default for SurfaceKernel {
+    fn default() -> Self {
+        Self {
+            neighbor_radius: 4.0,
+            spray_threshold: 8,
+            anisotropic: true,
+            center_shift: 0.9,
+            max_ratio: 4.0,
+            radius_scale: 1.24,
+            sphere_neighbors: 8,
+            full_neighbors: 16,
+            skip_interior: true,
+        }
+    }
+}
+
+impl SurfaceKernel {
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// [`ShapeError::Setting`] or [`ShapeError::NeighborOrder`], naming the field and its value.
+    pub fn validate(&self) -> Result<(), ShapeError> {
+        let ranges = [
+            ("neighbor_radius", self.neighbor_radius, 1.0, 10.0),
+            ("center_shift", self.center_shift, 0.0, 1.0),
+            ("max_ratio", self.max_ratio, 1.0, 16.0),
+            ("radius_scale", self.radius_scale, 0.1, 10.0),
+        ];
+        for (field, value, min, max) in ranges {
+            // NaN is in no range.
+            if !(min..=max).contains(&value) {
+                return Err(ShapeError::Setting {
+                    field,
+                    value,
+                    min,
+                    max,
+                });
+            }
+        }
+        if self.sphere_neighbors > self.full_neighbors {
+            return Err(ShapeError::NeighborOrder {
+                sphere: self.sphere_neighbors,
+                full: self.full_neighbors,
+            });
+        }
+        Ok(())
+    }
+}
