@@ -1,6 +1,6 @@
 //! Particles → splats: what the shape stage promises, through its public interface.
 
-use bevy::math::{Mat3, Quat, Vec3};
+use bevy::math::{EulerRot, Mat3, Quat, Vec3};
 use bevy_fluid::shape::{FluidSplats, ShapeError, ShapeWorkspace, Splat, SurfaceKernel};
 use proptest::prelude::*;
 
@@ -8,6 +8,9 @@ use proptest::prelude::*;
 #[allow(dead_code, reason = "the unit tests use the rest")]
 mod oracle;
 use oracle::{Random, lattice};
+
+#[path = "shape/classes.rs"]
+mod classes;
 
 /// Particle radius; particles at rest are two of them apart.
 const R: f32 = 0.025;
@@ -63,7 +66,10 @@ fn check(splats: &FluidSplats, positions: &[Vec3], kernel: &SurfaceKernel) {
         assert!((center + half_size * (1.0 - F16)).cmple(splats.max).all());
     }
     for sphere in splats.by_class()[1..].iter().copied().flatten() {
-        assert_eq!(Vec3::from(sphere.center), positions[sphere.particle as usize]);
+        assert_eq!(
+            Vec3::from(sphere.center),
+            positions[sphere.particle as usize]
+        );
         assert_eq!(sphere.matrix(), Mat3::IDENTITY * sphere.scale);
     }
 }
@@ -77,7 +83,11 @@ fn semi_axes(splat: &Splat) -> [f32; 3] {
 /// Half of the ellipsoid's bounding box, in m.
 fn extent(splat: &Splat) -> Vec3 {
     let rows = splat.matrix().transpose();
-    Vec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length())
+    Vec3::new(
+        rows.x_axis.length(),
+        rows.y_axis.length(),
+        rows.z_axis.length(),
+    )
 }
 
 /// The splat of a particle, and its class: 0 bulk, 1 interior, 2 spray.
@@ -121,7 +131,15 @@ fn h01_h02_positions_that_are_not_finite_are_dropped_and_counted() {
 
 #[test]
 fn h03_a_radius_that_is_no_length_is_an_error() {
-    for radius in [0.0, -0.0, -1.0, f32::NAN, f32::INFINITY, f32::MIN_POSITIVE, f32::MAX] {
+    for radius in [
+        0.0,
+        -0.0,
+        -1.0,
+        f32::NAN,
+        f32::INFINITY,
+        f32::MIN_POSITIVE,
+        f32::MAX,
+    ] {
         let mut splats = shape(&[Vec3::ZERO]);
         let result = ShapeWorkspace::default().shape(
             &[Vec3::ZERO],
@@ -145,15 +163,53 @@ fn settings_out_of_range_are_named() {
         let mut splats = FluidSplats::default();
         let result = ShapeWorkspace::default().shape(&[Vec3::ZERO], R, &kernel, &mut splats);
         let message = result.unwrap_err().to_string();
-        assert!(message.contains(name) && message.contains(value), "{message}");
+        assert!(
+            message.contains(name) && message.contains(value),
+            "{message}"
+        );
     };
     for (value, text) in [(f32::NAN, "NaN"), (-1.0, "-1"), (1e9, "1000000000")] {
-        named(SurfaceKernel { neighbor_radius: value, ..default }, "neighbor_radius", text);
-        named(SurfaceKernel { center_shift: value, ..default }, "center_shift", text);
-        named(SurfaceKernel { max_ratio: value, ..default }, "max_ratio", text);
-        named(SurfaceKernel { radius_scale: value, ..default }, "radius_scale", text);
+        named(
+            SurfaceKernel {
+                neighbor_radius: value,
+                ..default
+            },
+            "neighbor_radius",
+            text,
+        );
+        named(
+            SurfaceKernel {
+                center_shift: value,
+                ..default
+            },
+            "center_shift",
+            text,
+        );
+        named(
+            SurfaceKernel {
+                max_ratio: value,
+                ..default
+            },
+            "max_ratio",
+            text,
+        );
+        named(
+            SurfaceKernel {
+                radius_scale: value,
+                ..default
+            },
+            "radius_scale",
+            text,
+        );
     }
-    named(SurfaceKernel { sphere_neighbors: 17, ..default }, "sphere_neighbors", "17");
+    named(
+        SurfaceKernel {
+            sphere_neighbors: 17,
+            ..default
+        },
+        "sphere_neighbors",
+        "17",
+    );
 }
 
 #[test]
@@ -170,7 +226,10 @@ fn h05_h06_one_and_two_particles_are_spray_spheres() {
         let splats = shape(positions);
         assert_eq!(splats.spray as usize, positions.len());
         for splat in &splats.splats {
-            assert_eq!(*splat, Splat::sphere(positions[splat.particle as usize], R, splat.particle));
+            assert_eq!(
+                *splat,
+                Splat::sphere(positions[splat.particle as usize], R, splat.particle)
+            );
         }
     }
 }
@@ -185,7 +244,12 @@ fn h07_four_coplanar_particles_do_not_pop() {
         for particle in 0..4 {
             let [(a, _), (b, _)] = [&flat, &bent].map(|splats| find(splats, particle));
             assert!(Vec3::from(a.center).distance(Vec3::from(b.center)) < 1e-3 * R);
-            assert!((a.matrix() - b.matrix()).to_cols_array().iter().all(|d| d.abs() < 5e-3 * R));
+            assert!(
+                (a.matrix() - b.matrix())
+                    .to_cols_array()
+                    .iter()
+                    .all(|d| d.abs() < 5e-3 * R)
+            );
         }
     }
 }
@@ -215,7 +279,7 @@ fn h09_collinear_particles_are_spindles() {
 
 #[test]
 fn h10_a_sheet_is_tiled_by_discs() {
-    let tilt = Quat::from_euler(bevy::math::EulerRot::XYZ, 0.3, 0.7, -0.4);
+    let tilt = Quat::from_euler(EulerRot::XYZ, 0.3, 0.7, -0.4);
     let sheet = (0..900).map(|i| Vec3::new((i % 30) as f32, (i / 30) as f32, 0.0) * SPACING * 0.7);
     let positions: Vec<_> = sheet.map(|p| tilt * p).collect();
     let splats = shape(&positions);
@@ -239,14 +303,22 @@ fn h11_isotropic_neighborhoods_are_spheres() {
 #[test]
 fn h12_far_from_the_origin_only_the_positions_round() {
     // Multiples of 1/16 m, which f32 still resolves 1e6 m away.
-    let near: Vec<_> = lattice(8, 2.0, 0.3).iter().map(|p| (p * 16.0).round() / 16.0).collect();
+    let near: Vec<_> = lattice(8, 2.0, 0.3)
+        .iter()
+        .map(|p| (p * 16.0).round() / 16.0)
+        .collect();
     let offset = Vec3::new(1e6, -1e6, 0.5e6);
     let far: Vec<_> = near.iter().map(|p| p + offset).collect();
     let [near, far] = [near, far].map(|p| shape_with(&p, 1.0, &SurfaceKernel::default()));
     assert_eq!([near.bulk, near.interior], [far.bulk, far.interior]);
     for splat in &near.splats {
         let (other, _) = find(&far, splat.particle as usize);
-        assert!((splat.matrix() - other.matrix()).to_cols_array().iter().all(|d| d.abs() < 2e-3));
+        assert!(
+            (splat.matrix() - other.matrix())
+                .to_cols_array()
+                .iter()
+                .all(|d| d.abs() < 2e-3)
+        );
         let moved = Vec3::from(other.center) - offset;
         assert!(moved.distance(Vec3::from(splat.center)) < 0.1);
     }
@@ -314,55 +386,30 @@ fn h38_permuted_particles_make_the_same_splats() {
 fn the_number_of_threads_changes_nothing() {
     let positions = [lattice(20, SPACING, 0.4), vec![Vec3::ZERO; 3000]].concat();
     let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| shape(&positions))
     };
     let [one, three] = [1, 3].map(on);
     assert_eq!(one.splats, three.splats);
-    assert_eq!((one.min, one.max, one.bulk), (three.min, three.max, three.bulk));
-}
-
-#[test]
-fn the_spray_threshold_counts_neighbors() {
-    let size = 7;
-    let positions = lattice(size, 1.0, 0.0);
-    let index = |x: usize, y: usize, z: usize| x + size * (y + size * z);
-    // Two radii apart: neighbours are 1, √2, √3 and exactly 2 spacings away.
-    let known = [
-        (index(0, 0, 0), 10),
-        (index(3, 0, 0), 15),
-        (index(3, 3, 0), 22),
-        (index(3, 3, 1), 31),
-        (index(3, 3, 3), 32),
-    ];
-    for (particle, neighbors) in known {
-        for (spray_threshold, class) in [(neighbors, 0), (neighbors + 1, 2)] {
-            let kernel = SurfaceKernel { spray_threshold, skip_interior: false, ..BULK };
-            let splats = shape_with(&positions, 0.5, &kernel);
-            assert_eq!(find(&splats, particle).1, class, "{particle}");
-        }
-    }
-}
-
-#[test]
-fn a_particle_at_the_spray_threshold_is_the_sphere_of_its_radius() {
-    // Eight neighbours on one side only.
-    let corners = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32));
-    let mut positions: Vec<_> = corners.map(|p| (p + Vec3::new(0.6, 0.0, 0.0)) * R).collect();
-    positions.push(Vec3::ZERO);
-    let (bulk, class) = find(&shape(&positions), 8);
-    assert_eq!(class, 0);
-    assert_sphere(&bulk, Vec3::ZERO, R);
-    let (spray, class) = find(&shape(&positions[1..]), 7);
-    assert_eq!(class, 2);
-    assert_sphere(&spray, Vec3::ZERO, R);
+    assert_eq!(
+        (one.min, one.max, one.bulk),
+        (three.min, three.max, three.bulk)
+    );
 }
 
 #[test]
 fn the_volume_is_kept() {
     let positions = lattice(12, SPACING, 0.3);
     let splats = shape_with(&positions, R, &BULK);
-    assert!(splats.splats.iter().any(|s| semi_axes(s)[2] < 0.5 * s.scale));
+    assert!(
+        splats
+            .splats
+            .iter()
+            .any(|s| semi_axes(s)[2] < 0.5 * s.scale)
+    );
     for splat in &splats.splats {
         let volume = splat.matrix().determinant();
         assert!((volume / (1.24 * R).powi(3) - 1.0).abs() < 4.0 * F16);
@@ -373,7 +420,14 @@ fn the_volume_is_kept() {
 fn the_center_moves_by_lambda_towards_the_mean() {
     let positions = lattice(8, SPACING, 0.3);
     for center_shift in [0.0, 0.5, 1.0] {
-        let splats = shape_with(&positions, R, &SurfaceKernel { center_shift, ..BULK });
+        let splats = shape_with(
+            &positions,
+            R,
+            &SurfaceKernel {
+                center_shift,
+                ..BULK
+            },
+        );
         for splat in splats.splats.iter().step_by(17) {
             let particle = splat.particle as usize;
             let (mean, _) = oracle::moments(&positions, particle, 4.0 * R);
@@ -393,7 +447,10 @@ fn the_ratio_is_limited() {
     for max_ratio in [1.0, 2.0, 16.0] {
         // `check` holds every splat against it.
         let splats = shape_with(&positions, R, &SurfaceKernel { max_ratio, ..BULK });
-        let ratios = splats.splats.iter().map(|s| semi_axes(s)[0] / semi_axes(s)[2]);
+        let ratios = splats
+            .splats
+            .iter()
+            .map(|s| semi_axes(s)[0] / semi_axes(s)[2]);
         assert!(ratios.fold(0.0, f32::max) > 0.98 * max_ratio);
     }
 }
@@ -401,7 +458,10 @@ fn the_ratio_is_limited() {
 #[test]
 fn without_anisotropy_every_splat_is_the_particle() {
     let positions = lattice(12, SPACING, 0.2);
-    let kernel = SurfaceKernel { anisotropic: false, ..SurfaceKernel::default() };
+    let kernel = SurfaceKernel {
+        anisotropic: false,
+        ..SurfaceKernel::default()
+    };
     let [spheres, ellipsoids] = [shape_with(&positions, R, &kernel), shape(&positions)];
     let classes = |s: &FluidSplats| [s.bulk, s.interior, s.spray];
     assert_eq!(classes(&spheres), classes(&ellipsoids));
@@ -412,61 +472,6 @@ fn without_anisotropy_every_splat_is_the_particle() {
     }
 }
 
-#[test]
-fn a_shell_of_two_spacings_is_left_around_the_interior() {
-    let size = 16;
-    for jitter in [0.0, 0.05, 0.1, 0.2, 0.3] {
-        let splats = shape(&lattice(size, SPACING, jitter));
-        let [_, interior, _] = splats.by_class();
-        for splat in interior {
-            let i = splat.particle as usize;
-            let cell = [i % size, i / size % size, i / size / size];
-            let depth = cell.map(|k| k.min(size - 1 - k)).into_iter().min();
-            assert!(depth >= Some(2), "jitter {jitter}: {cell:?}");
-        }
-        // The three outermost layers may all stay; little more should.
-        assert!(interior.len() >= 700, "jitter {jitter}: {}", interior.len());
-    }
-}
-
-#[test]
-fn a_ball_keeps_its_shell_in_any_orientation() {
-    let turn = Quat::from_euler(bevy::math::EulerRot::XYZ, 0.5, -0.8, 0.3);
-    let center = Vec3::splat(10.0 * SPACING);
-    for radius in [4.0, 6.5, 9.0] {
-        let ball = lattice(21, SPACING, 0.15).into_iter().map(|p| turn * (p - center));
-        let ball: Vec<_> = ball.filter(|p| p.length() < radius * SPACING).collect();
-        let splats = shape(&ball);
-        for splat in splats.by_class()[1] {
-            let depth = radius - Vec3::from(splat.center).length() / SPACING;
-            assert!(depth > 2.0, "{depth} spacings deep in a ball of {radius}");
-        }
-        assert_eq!(splats.interior > 0, radius > 4.0);
-    }
-}
-
-#[test]
-fn thin_sheets_and_cracks_have_no_interior() {
-    let size = 20;
-    for jitter in [0.0, 0.1, 0.2] {
-        let block = lattice(size, SPACING, jitter);
-        let layer = |particle: usize| particle / size / size;
-        for layers in 1..=4 {
-            let sheet: Vec<_> = block[..layers * size * size].to_vec();
-            assert_eq!(shape(&sheet).interior, 0, "{layers} layers, jitter {jitter}");
-        }
-        // A crack: layer 10 is missing.
-        let kept: Vec<_> = (0..block.len()).filter(|&particle| layer(particle) != 10).collect();
-        let cracked: Vec<_> = kept.iter().map(|&particle| block[particle]).collect();
-        let splats = shape(&cracked);
-        assert!(splats.interior > 500);
-        for splat in splats.by_class()[1] {
-            let layer = layer(kept[splat.particle as usize]);
-            assert!(layer.abs_diff(10) > 2, "layer {layer}, jitter {jitter}");
-        }
-    }
-}
-
 /// Clusters, droplets and broken values.
 fn clouds() -> impl Strategy<Value = Vec<Vec3>> {
     let coordinate = || -0.3_f32..0.3;
@@ -474,7 +479,9 @@ fn clouds() -> impl Strategy<Value = Vec<Vec3>> {
     let cluster = (point.clone(), 1_usize..60, 0.0_f32..0.1, any::<u64>());
     let cluster = cluster.prop_map(|(center, count, size, seed)| {
         let mut random = Random(seed | 1);
-        (0..count).map(|_| center + random.point() * size).collect::<Vec<_>>()
+        (0..count)
+            .map(|_| center + random.point() * size)
+            .collect::<Vec<_>>()
     });
     let broken = prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(-1e29), Just(1e5)];
     let broken = broken.prop_map(|value| vec![Vec3::new(0.1, value, 0.0)]);

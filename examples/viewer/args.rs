@@ -143,6 +143,7 @@ impl Args {
                 FresnelArg::Exact => Fresnel::Exact,
                 FresnelArg::Schlick => Fresnel::Schlick,
             },
+            ..default()
         }
     }
 

@@ -48,8 +48,16 @@ fn run(args: &Args) -> anyhow::Result<ExitCode> {
         });
     }
     // Before anything is drawn, so that a path that cannot be written to costs nothing.
-    let picture = args.out.as_deref().map(PendingPicture::create).transpose()?;
-    let stats_file = args.stats.as_deref().map(stats::check_writable).transpose()?;
+    let picture = args
+        .out
+        .as_deref()
+        .map(PendingPicture::create)
+        .transpose()?;
+    let stats_file = args
+        .stats
+        .as_deref()
+        .map(stats::check_writable)
+        .transpose()?;
     let mut app = headless_app(args.size, |app| {
         app.add_plugins(scene);
     })?;

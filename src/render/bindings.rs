@@ -5,9 +5,9 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, BlendComponent, BlendFactor,
-            BlendOperation, BlendState, ColorTargetState, ColorWrites,
-            FragmentState, LoadOp, Operations, RenderPassColorAttachment, ShaderStages, StoreOp,
-            TextureFormat, TextureSampleType, TextureView,
+            BlendOperation, BlendState, ColorTargetState, ColorWrites, FragmentState, LoadOp,
+            Operations, RenderPassColorAttachment, ShaderStages, StoreOp, TextureFormat,
+            TextureSampleType, TextureView,
             binding_types::{
                 texture_2d, texture_depth_2d, texture_depth_2d_multisampled, uniform_buffer,
             },

@@ -335,8 +335,7 @@ pub(crate) fn prepare_bodies(
                 format: view.target_format,
                 samples: msaa.samples(),
             };
-            let pipelines =
-                pipelines.of(&plan, &steps, settings, support.max_blend, composite);
+            let pipelines = pipelines.of(&plan, &steps, settings, support.max_blend, composite);
             let layers = Layers::new(
                 &mut textures,
                 &device,
@@ -376,9 +375,9 @@ pub(crate) fn prepare_bodies(
         commands.entity(entity).insert(ViewBodies {
             bodies: bodies.into_iter().map(|(_, body)| body).collect(),
             viewport: URect::from_corners(viewport.xy(), viewport.xy() + viewport.zw()),
-            scene_color: debug_view.is_none().then(|| {
-                scene_copy(&mut textures, &device, target_size, view.target_format)
-            }),
+            scene_color: debug_view
+                .is_none()
+                .then(|| scene_copy(&mut textures, &device, target_size, view.target_format)),
             multisampled: msaa.samples() > 1,
         });
     }
@@ -455,6 +454,7 @@ fn gpu_body(
             Search::Secant => 0,
             Search::Bracketed { coarse_samples } => coarse_samples.min(32),
         },
+        contact: positive(settings.contact, 0.0) * radius,
         ..default()
     }
 }

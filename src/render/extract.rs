@@ -190,7 +190,9 @@ pub(crate) fn extract_fluids(
         fluid.material = *material;
         fluid.visible = visibility.get();
         fluid.radius = particles.radius * mean_scale(transform);
-        fluid.layers.clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
+        fluid
+            .layers
+            .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
         // Taking the splats is no change that anyone should react to.
         let shaped = shaped.bypass_change_detection();
         if shaped.take_fresh() {

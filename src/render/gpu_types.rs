@@ -34,6 +34,7 @@ pub(crate) struct GpuBody {
     pub(crate) range: f32,
     pub(crate) bound: f32,
     pub(crate) coarse_samples: u32,
+    pub(crate) contact: f32,
 }
 
 /// How a search for the next interface ended, as stored per ray (`STATUS_…` in `types.wgsl`).

@@ -4,9 +4,9 @@ use bevy::{
     prelude::*,
     render::{
         render_resource::{
-            Extent3d, Sampler, SamplerDescriptor, FilterMode, AddressMode, TextureDataOrder,
-            TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
-            TextureViewDescriptor, MipmapFilterMode,
+            AddressMode, Extent3d, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
+            TextureDataOrder, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+            TextureViewDescriptor,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, TextureCache},

@@ -45,6 +45,8 @@ struct GpuBody {
     bound: f32,
     // Search: evenly spaced samples before the bracket.
     coarse_samples: u32,
+    // Search: how far behind the liquid an opaque surface is wetted, world units.
+    contact: f32,
 }
 
 // Depth layers hold (device depth of the front, −device depth of the back), so that one `max`

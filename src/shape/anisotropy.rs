@@ -123,7 +123,11 @@ impl Splatting<'_> {
         out: &mut impl Iterator<Item = &'s mut Splat>,
     ) -> Bounds {
         let lanes = |value: &dyn Fn(&Neighborhood) -> f32| {
-            f32x8::new(batch.particles.map(|sorted| value(&self.neighborhoods[sorted])))
+            f32x8::new(
+                batch
+                    .particles
+                    .map(|sorted| value(&self.neighborhoods[sorted])),
+            )
         };
         let covariance = array::from_fn(|entry| lanes(&|n| n.covariance[entry]));
         let blend = self.blend(

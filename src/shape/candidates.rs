@@ -56,72 +56,76 @@ impl Candidates {
         if around.iter().map(ExactSizeIterator::len).sum::<usize>() <= MAX_CANDIDATES {
             for range in around {
                 match skip {
-                    None => self.extend(grid, range),
-                    Some(skip) => {
-                        // Without an early exit this runs in lanes.
-                        if !skip[range.clone()].iter().fold(true, |all, &skip| all & skip) {
-                            range
-                                .filter(|&sorted| !skip[sorted])
-                                .for_each(|sorted| self.push(grid, sorted));
-                        }
+                    None => self.extend(grid, range, &bounds, |_| true),
+                    Some(skip) if skip[range.clone()].contains(&false) => {
+                        self.extend(grid, range, &bounds, |sorted| !skip[sorted]);
                     }
+                    Some(_) => {}
                 }
             }
-            self.pad();
-            self.prune(&bounds);
         } else {
-            let limit = self.reach * self.reach;
-            let near = || {
-                around.iter().cloned().flatten().filter(|&sorted| {
-                    let [x, y, z] = grid.position(sorted).to_array().map(f32x8::splat);
-                    skip.is_none_or(|skip| !skip[sorted])
-                        && bounds.distance_squared(x, y, z).to_array()[0] <= limit
-                })
-            };
-            self.multiplicity = near().count().div_ceil(MAX_CANDIDATES).max(1);
-            for sorted in near().step_by(self.multiplicity) {
-                self.push(grid, sorted);
-            }
+            self.sample(grid, &around, &bounds, |sorted| {
+                skip.is_none_or(|skip| !skip[sorted])
+            });
         }
-        self.pad();
-    }
-
-    fn push(&mut self, grid: &Grid, sorted: usize) {
-        self.set(self.len, grid.position(sorted).to_array());
-        self.len += 1;
-    }
-
-    fn extend(&mut self, grid: &Grid, range: Range<usize>) {
-        let end = self.len + range.len();
-        self.x[self.len..end].copy_from_slice(&grid.x[range.clone()]);
-        self.y[self.len..end].copy_from_slice(&grid.y[range.clone()]);
-        self.z[self.len..end].copy_from_slice(&grid.z[range]);
-        self.len = end;
-    }
-
-    /// Fills the lanes that the last candidates leave over.
-    fn pad(&mut self) {
+        // Fills the lanes that the last candidates leave over.
         for index in self.len..self.len + LANES {
             self.set(index, [NOWHERE; 3]);
         }
     }
 
-    /// Keeps the candidates within reach of the box.
-    fn prune(&mut self, bounds: &Bounds) {
+    /// Adds the wanted particles of a range that are within reach of the box.
+    #[inline(always)]
+    fn extend(
+        &mut self,
+        grid: &Grid,
+        range: Range<usize>,
+        bounds: &Bounds,
+        wanted: impl Fn(usize) -> bool,
+    ) {
         let limit = f32x8::splat(self.reach * self.reach);
-        let mut kept = 0;
-        for first in (0..self.len).step_by(LANES) {
-            let [x, y, z] = [&self.x, &self.y, &self.z]
-                .map(|axis| *axis[first..].first_chunk::<LANES>().unwrap());
-            let [xs, ys, zs] = [x, y, z].map(f32x8::new);
-            let near = bounds.distance_squared(xs, ys, zs).simd_le(limit).to_bitmask();
+        let [xs, ys, zs] = [&grid.x, &grid.y, &grid.z].map(|axis| &axis[range.clone()]);
+        let whole = xs.len() / LANES * LANES;
+        let [x8, y8, z8] = [xs, ys, zs].map(|axis| axis.as_chunks::<LANES>().0);
+        for (block, ((x, y), z)) in x8.iter().zip(y8).zip(z8).enumerate() {
+            let [vx, vy, vz] = [x, y, z].map(|&axis| f32x8::new(axis));
+            let near = bounds
+                .distance_squared(vx, vy, vz)
+                .simd_le(limit)
+                .to_bitmask();
             for lane in 0..LANES {
+                let wanted = wanted(range.start + block * LANES + lane);
                 // Written always and kept by moving on: no branch to mispredict.
-                self.set(kept, [x[lane], y[lane], z[lane]]);
-                kept += (near >> lane & 1) as usize;
+                self.set(self.len, [x[lane], y[lane], z[lane]]);
+                self.len += usize::from(wanted) & (near >> lane) as usize;
             }
         }
-        self.len = kept;
+        // The rest of the range, too short for the lanes.
+        for sorted in range.start + whole..range.end {
+            let position = grid.position(sorted);
+            self.set(self.len, position.to_array());
+            self.len += usize::from(wanted(sorted) & bounds.near(position, self.reach));
+        }
+    }
+
+    /// Adds an even sample of the wanted particles within reach of the box.
+    fn sample(
+        &mut self,
+        grid: &Grid,
+        ranges: &[Range<usize>],
+        bounds: &Bounds,
+        wanted: impl Fn(usize) -> bool,
+    ) {
+        let reach = self.reach;
+        let near = || {
+            let all = ranges.iter().cloned().flatten();
+            all.filter(|&sorted| wanted(sorted) && bounds.near(grid.position(sorted), reach))
+        };
+        self.multiplicity = near().count().div_ceil(MAX_CANDIDATES).max(1);
+        for sorted in near().step_by(self.multiplicity) {
+            self.set(self.len, grid.position(sorted).to_array());
+            self.len += 1;
+        }
     }
 
     fn set(&mut self, index: usize, [x, y, z]: [f32; 3]) {
@@ -189,9 +193,8 @@ impl Candidates {
         let [xs, ys, zs] = [&self.x, &self.y, &self.z].map(|axis| axis[..end].as_chunks().0);
         let [px, py, pz] = position.to_array().map(f32x8::splat);
         let lanes = xs.iter().zip(ys).zip(zs);
-        lanes.map(move |((&x, &y), &z)| {
-            [f32x8::new(x) - px, f32x8::new(y) - py, f32x8::new(z) - pz]
-        })
+        lanes
+            .map(move |((&x, &y), &z)| [f32x8::new(x) - px, f32x8::new(y) - py, f32x8::new(z) - pz])
     }
 }
 
@@ -211,8 +214,8 @@ impl Bounds {
         Self { min, max }
     }
 
-    /// Never more than the distance from any of the particles, in rounded arithmetic too:
-    /// the same operations on smaller differences.
+    /// Squared distances, never more than from any of the particles, in rounded arithmetic
+    /// too: the same operations on smaller differences.
     fn distance_squared(&self, x: f32x8, y: f32x8, z: f32x8) -> f32x8 {
         let outside = |at: f32x8, min: f32, max: f32| {
             at - at.fast_max(f32x8::splat(min)).fast_min(f32x8::splat(max))
@@ -221,5 +224,11 @@ impl Bounds {
         let dy = outside(y, self.min.y, self.max.y);
         let dz = outside(z, self.min.z, self.max.z);
         dx * dx + dy * dy + dz * dz
+    }
+
+    /// Whether one position is within reach.
+    fn near(&self, position: Vec3, reach: f32) -> bool {
+        let [x, y, z] = (position - position.max(self.min).min(self.max)).to_array();
+        x * x + y * y + z * z <= reach * reach
     }
 }

@@ -26,9 +26,11 @@ const FULL_MEAN: f32 = 0.1;
 const FULL_TRACE: f32 = 0.36;
 /// Largest anisotropy of a full neighbourhood.
 const FULL_ANISOTROPY: f32 = 0.15;
-/// Thickness that a neighbourhood that is not full adds to the shell, in radii: one and a
-/// half spacings. One spacing below a surface neighbourhoods can already be full, so this
-/// leaves a shell of two.
+/// How far, in radii, a particle with a neighbourhood that is not full keeps others from
+/// being interior. A neighbourhood can be full one spacing (2 radii) below the surface
+/// already. Measured on lattices with particles moved by up to 0.35 spacings, 3.0 leaves
+/// 0.8 % of the interior less than two spacings deep, 3.5 nothing, and 4.0 costs another
+/// fifth of the interior.
 const SHELL: f32 = 3.5;
 
 /// Classes of the sorted particles.

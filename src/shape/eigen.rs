@@ -1,5 +1,7 @@
 //! Eigenvalues and eigenvectors of eight symmetric 3×3 matrices at a time.
 
+use std::array;
+
 use wide::f32x8;
 
 /// Sweeps that reach the precision of f32 from any start: convergence is quadratic.
@@ -46,10 +48,7 @@ pub(super) fn eigen([xx, xy, xz, yy, yz, zz]: [f32x8; 6]) -> Eigen {
 /// Turns axes p and q so that the entry between them becomes zero. Without branches: an
 /// entry that is zero already gives the rotation by zero.
 #[inline(always)]
-fn rotate<const P: usize, const Q: usize>(
-    a: &mut [[f32x8; 3]; 3],
-    vectors: &mut [[f32x8; 3]; 3],
-) {
+fn rotate<const P: usize, const Q: usize>(a: &mut [[f32x8; 3]; 3], vectors: &mut [[f32x8; 3]; 3]) {
     let [p, q, r] = [P, Q, 3 - P - Q];
     let difference = a[q][q] - a[p][p];
     let entry = a[p][q];
@@ -68,7 +67,8 @@ fn rotate<const P: usize, const Q: usize>(
     a[q][p] = f32x8::ZERO;
     (a[p][r], a[q][r]) = turn(a[p][r], a[q][r]);
     (a[r][p], a[r][q]) = (a[p][r], a[q][r]);
-    for axis in 0..3 {
-        (vectors[p][axis], vectors[q][axis]) = turn(vectors[p][axis], vectors[q][axis]);
-    }
+    let [u, v] = [vectors[p], vectors[q]];
+    let turned: [_; 3] = array::from_fn(|axis| turn(u[axis], v[axis]));
+    vectors[p] = turned.map(|(u, _)| u);
+    vectors[q] = turned.map(|(_, v)| v);
 }

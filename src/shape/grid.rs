@@ -114,7 +114,10 @@ impl Grid {
     /// Cuts a range of sorted particles into the parts that share a cell.
     pub(super) fn groups(&self, range: Range<usize>) -> impl Iterator<Item = Group> {
         let mut first = range.start;
-        let mut cell = self.starts.partition_point(|&start| start as usize <= first) - 1;
+        let mut cell = self
+            .starts
+            .partition_point(|&start| start as usize <= first)
+            - 1;
         iter::from_fn(move || {
             if first >= range.end {
                 return None;
@@ -133,9 +136,8 @@ impl Grid {
     /// particle once.
     pub(super) fn around(&self, cell: usize) -> [Range<usize>; 10] {
         let last = self.layout.cells as usize - 1;
-        let span = |first: usize, last: usize| {
-            self.starts[first] as usize..self.starts[last + 1] as usize
-        };
+        let span =
+            |first: usize, last: usize| self.starts[first] as usize..self.starts[last + 1] as usize;
         // Three cells in a row along x are one range, but for the one row that may wrap.
         let mut ranges = array::from_fn(|_| 0..0);
         for (row, middle) in self.layout.rows(cell).into_iter().enumerate() {

@@ -38,7 +38,7 @@ pub struct SurfaceKernel {
     /// Lower: the particles show through as bumps.
     pub center_shift: f32,
 
-    /// Longest axis of an ellipsoid over its shortest (k_r of Yu & Turk).
+    /// Longest axis of an ellipsoid over its shortest (`k_r` of Yu & Turk).
     ///
     /// Unit: none. Range: 1 to 16. Default: 4.
     /// Higher: flatter discs, which tile a surface better and stick out more at corners.
@@ -62,7 +62,7 @@ pub struct SurfaceKernel {
 
     /// Number of neighbours from which a splat is fully anisotropic.
     ///
-    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (N_ε = 25 in the
+    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (`N_ε` = 25 in the
     /// paper, for a wider R). Shape, shift and scale blend smoothly in between.
     /// Higher: a longer blend. Lower: a shorter one, and visible pops where it is short.
     pub full_neighbors: u32,

@@ -30,9 +30,9 @@ mod eigen;
 mod grid;
 mod kernel;
 mod neighborhood;
-mod splats;
 #[cfg(test)]
 mod oracle;
+mod splats;
 #[cfg(test)]
 mod tests;
 

@@ -45,8 +45,14 @@ fn cloud(scale: f32) -> Vec<Vec3> {
     let mut random = Random(7);
     let block = lattice(8, 0.05, 0.3);
     let droplets: Vec<_> = (0..300).map(|_| random.point() * 2.0).collect();
-    let knot: Vec<_> = (0..200).map(|_| random.point() * 0.03 + Vec3::ONE).collect();
-    [block, droplets, knot].concat().iter().map(|&p| p * scale).collect()
+    let knot: Vec<_> = (0..200)
+        .map(|_| random.point() * 0.03 + Vec3::ONE)
+        .collect();
+    [block, droplets, knot]
+        .concat()
+        .iter()
+        .map(|&p| p * scale)
+        .collect()
 }
 
 #[test]
@@ -155,7 +161,10 @@ fn check_eigen(matrices: &[[f32; 6]]) {
         for (lane, matrix) in batch.iter().enumerate() {
             let a = matrix.map(f64::from);
             let exact = oracle::eigenvalues(a);
-            let size = exact[0].abs().max(exact[2].abs()).max(f64::from(f32::MIN_POSITIVE));
+            let size = exact[0]
+                .abs()
+                .max(exact[2].abs())
+                .max(f64::from(f32::MIN_POSITIVE));
             let mut found = values.map(|value| f64::from(value[lane]));
             for k in 0..3 {
                 let v = vectors[k].map(|axis| f64::from(axis[lane]));
@@ -178,7 +187,15 @@ fn check_eigen(matrices: &[[f32; 6]]) {
 }
 
 fn outer(v: Vec3, factor: f32) -> [f32; 6] {
-    [v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.y, v.y * v.z, v.z * v.z].map(|a| a * factor)
+    [
+        v.x * v.x,
+        v.x * v.y,
+        v.x * v.z,
+        v.y * v.y,
+        v.y * v.z,
+        v.z * v.z,
+    ]
+    .map(|a| a * factor)
 }
 
 /// Random symmetric matrices with the given eigenvalues.
@@ -249,7 +266,9 @@ fn a_steady_frame_keeps_its_buffers() {
     let mut splats = FluidSplats::default();
     let kernel = SurfaceKernel::default();
     let frame = cloud(1.0);
-    workspace.shape(&frame, 0.025, &kernel, &mut splats).unwrap();
+    workspace
+        .shape(&frame, 0.025, &kernel, &mut splats)
+        .unwrap();
     let buffers = |workspace: &ShapeWorkspace, splats: &FluidSplats| {
         let mut buffers = workspace.grid.buffers();
         buffers.extend(workspace.classes.buffers());
@@ -260,7 +279,9 @@ fn a_steady_frame_keeps_its_buffers() {
     };
     let before = buffers(&workspace, &splats);
     for count in [frame.len(), 10, 0, frame.len()] {
-        workspace.shape(&frame[..count], 0.025, &kernel, &mut splats).unwrap();
+        workspace
+            .shape(&frame[..count], 0.025, &kernel, &mut splats)
+            .unwrap();
         assert_eq!(buffers(&workspace, &splats), before);
     }
 }

@@ -33,7 +33,7 @@ pub enum StageError {
     /// Pipelines that neither compiled nor failed, for want of a shader or an import of it.
     #[error("pipelines still waiting after {seconds} s (is a shader or an import missing?):\n{}", .waiting.join("\n"))]
     Unsettled {
-        /// How long they were given.
+        /// How long nothing has changed.
         seconds: u64,
         /// What waits, and for what.
         waiting: Vec<String>,

@@ -29,6 +29,7 @@ use crate::{
 /// Frames without a waiting pipeline before the stage counts as settled: what is extracted in one
 /// frame asks for its pipelines in the next.
 const QUIET_FRAMES: u32 = 2;
+/// How long the same pipelines may wait before they are taken to wait for good.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// An app without a window, ready for [`settle`] and [`step`]: `configure` adds what is to be
@@ -67,15 +68,18 @@ fn swap_clock(app: &mut App, clock: TimeUpdateStrategy) -> TimeUpdateStrategy {
 }
 
 fn wait_for_pipelines(app: &mut App) -> Result<(), StageError> {
-    let start = Instant::now();
     let mut quiet = 0;
+    let mut last_progress = Instant::now();
+    let mut waiting = Vec::new();
     // The first frame has nothing extracted yet: it does not count.
     update(app);
     while quiet < QUIET_FRAMES {
         update(app);
-        let waiting = waiting_pipelines(app);
+        let were_waiting = mem::replace(&mut waiting, waiting_pipelines(app));
         quiet = if waiting.is_empty() { quiet + 1 } else { 0 };
-        if start.elapsed() > PATIENCE {
+        if waiting.is_empty() || waiting != were_waiting {
+            last_progress = Instant::now();
+        } else if last_progress.elapsed() > PATIENCE {
             return Err(StageError::Unsettled {
                 seconds: PATIENCE.as_secs(),
                 waiting,

@@ -7,12 +7,17 @@
 //!
 //! ```no_run
 //! use bevy::prelude::*;
-//! use fluid_stage::StagePlugins;
+//! use fluid_stage::{StagePlugins, scenery::Scenery};
 //!
 //! fn main() -> AppExit {
 //!     App::new()
 //!         .add_plugins(StagePlugins::from_args())
+//!         .add_systems(Startup, setup)
 //!         .run()
+//! }
+//!
+//! fn setup(mut scenery: Scenery) {
+//!     scenery.checker_floor(Vec3::ZERO, 4.0, 8);
 //! }
 //! ```
 
@@ -26,6 +31,7 @@ mod plugins;
 mod read;
 pub mod scenery;
 mod stage;
+mod texels;
 mod timing;
 
 pub use args::ArgumentError;
@@ -35,6 +41,7 @@ pub use headless::{
 };
 pub use picture::PendingPicture;
 pub use plugins::{StagePlugins, VIEW_SIZE};
-pub use read::{TextureData, read_buffer, read_subresource, read_texture};
+pub use read::{read_buffer, read_subresource, read_texture};
 pub use stage::Stage;
+pub use texels::TextureData;
 pub use timing::{gpu_spans, median_gpu_ms};

@@ -43,23 +43,20 @@ fn run(app: &mut App, out: &Path, frames: u32, time_step: Duration) -> Result<Ap
     finish(app);
     settle(app)?;
     set_time_step(app, time_step);
-    let mut exit = AppExit::Success;
-    for _ in 0..frames {
+    let mut stepped = 0;
+    while stepped < frames && app.should_exit().is_none() {
         step(app, 1);
-        if let Some(asked) = app.should_exit() {
-            exit = asked;
-            break;
-        }
+        stepped += 1;
     }
     let image = capture(app)?;
     let (width, height) = image.dimensions();
     picture.commit(image)?;
     println!(
-        "wrote {} ({width}x{height}, {frames} frames, {})",
+        "wrote {} ({width}x{height}, {stepped} frames, {})",
         out.display(),
         adapter_name(app)
     );
-    Ok(exit)
+    Ok(app.should_exit().unwrap_or(AppExit::Success))
 }
 
 /// A picture is written beside its place and then moved there: at no time is half a picture in

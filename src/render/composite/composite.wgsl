@@ -57,12 +57,12 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
             end = start;
         }
     }
-    let move = end - start;
+    let way = end - start;
     // Distance to the border along each axis, as a fraction of the way.
-    let border = select(vec2(-1.0), vec2(1.0), move.xy >= vec2(0.0));
-    let reach = select(vec2(1e9), (border - start.xy) / move.xy, abs(move.xy) > vec2(1e-9));
+    let border = select(vec2(-1.0), vec2(1.0), way.xy >= vec2(0.0));
+    let reach = select(vec2(1e9), (border - start.xy) / way.xy, abs(way.xy) > vec2(1e-9));
     let fraction = clamp(min(reach.x, reach.y), 0.0, 1.0);
-    return Track(start, start + fraction * move, fraction >= 1.0);
+    return Track(start, start + fraction * way, fraction >= 1.0);
 }
 
 fn pixel_on(track: Track, s: f32) -> vec2<f32> {

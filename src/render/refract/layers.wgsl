@@ -30,17 +30,17 @@ fn on_screen(pixel: vec2<f32>) -> bool {
     return all(uv >= vec2(0.0)) && all(uv < vec2(1.0));
 }
 
-fn load_layers(class: u32, pixel: vec2<i32>) -> vec2<f32> {
+fn load_layers(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
     if !on_screen(vec2<f32>(pixel) + 0.5) {
         return vec2(NO_FRONT, NO_BACK);
     }
 #ifdef BULK_LAYERS
-    if class == BULK {
+    if kind == BULK {
         return textureLoad(bulk_layers, pixel, 0).xy;
     }
 #endif
 #ifdef SPRAY_LAYERS
-    if class == SPRAY {
+    if kind == SPRAY {
         return textureLoad(spray_layers, pixel, 0).xy;
     }
 #endif
@@ -48,23 +48,23 @@ fn load_layers(class: u32, pixel: vec2<i32>) -> vec2<f32> {
 }
 
 // Device depth of one side, 0 where there is none.
-fn load_side(class: u32, side: u32, pixel: vec2<i32>) -> f32 {
-    let layers = load_layers(class, pixel);
+fn load_side(kind: u32, side: u32, pixel: vec2<i32>) -> f32 {
+    let layers = load_layers(kind, pixel);
     if side == FRONT {
         return select(0.0, layers.x, has_front(layers));
     }
     return select(0.0, -layers.y, has_back(layers));
 }
 
-fn load_normal(class: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
+fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
     var encoded = vec4(0.0);
 #ifdef BULK_LAYERS
-    if class == BULK {
+    if kind == BULK {
         encoded = textureLoad(bulk_normals, pixel, 0);
     }
 #endif
 #ifdef SPRAY_LAYERS
-    if class == SPRAY {
+    if kind == SPRAY {
         encoded = textureLoad(spray_normals, pixel, 0);
     }
 #endif
@@ -85,7 +85,7 @@ fn corner(i: u32) -> vec2<i32> {
     return vec2(i32(i & 1u), i32(i >> 1u));
 }
 
-fn quad_at(class: u32, side: u32, pixel: vec2<f32>) -> Quad {
+fn quad_at(kind: u32, side: u32, pixel: vec2<f32>) -> Quad {
     var out: Quad;
     let p = pixel - 0.5;
     let f = fract(p);
@@ -93,7 +93,7 @@ fn quad_at(class: u32, side: u32, pixel: vec2<f32>) -> Quad {
     let nearest = u32(f.x >= 0.5) + 2u * u32(f.y >= 0.5);
     let map = depth_map(ndc_from_pixel(pixel));
     for (var i = 0u; i < 4u; i += 1u) {
-        out.depths[i] = load_side(class, side, out.base + corner(i));
+        out.depths[i] = load_side(kind, side, out.base + corner(i));
     }
     out.there = out.depths[nearest] > 0.0;
     let reference = view_depth(map, out.depths[nearest]);
@@ -109,19 +109,19 @@ fn quad_at(class: u32, side: u32, pixel: vec2<f32>) -> Quad {
 }
 
 // Device depth is affine over a plane, so it is what is interpolated.
-fn layer_depth(class: u32, side: u32, pixel: vec2<f32>) -> Depth {
-    let quad = quad_at(class, side, pixel);
+fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>) -> Depth {
+    let quad = quad_at(kind, side, pixel);
     let d = dot(quad.weights, quad.depths);
     return Depth(quad.there, view_depth(depth_map(ndc_from_pixel(pixel)), d));
 }
 
 // Outward unit normal. A layer that has none there gives the direction to the viewer.
-fn layer_normal(class: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
-    let quad = quad_at(class, side, pixel);
+fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
+    let quad = quad_at(kind, side, pixel);
     var sum = vec3(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
         if quad.weights[i] > 0.0 {
-            sum += quad.weights[i] * load_normal(class, side, quad.base + corner(i));
+            sum += quad.weights[i] * load_normal(kind, side, quad.base + corner(i));
         }
     }
     let size = length(sum);

@@ -7,9 +7,9 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, PipelineCache,
-            RenderPassDescriptor, RenderPipelineDescriptor, SamplerBindingType, ShaderStages,
-            SpecializedRenderPipeline, TextureSampleType, VertexState,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, PipelineCache, RenderPassDescriptor,
+            RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
+            TextureSampleType, VertexState,
             binding_types::{sampler, texture_2d, texture_cube},
         },
         renderer::{RenderContext, ViewQuery},

@@ -31,8 +31,8 @@ struct Path {
     direction: vec3<f32>,
     radiance: vec3<f32>,
     transmission: vec3<f32>,
-    class: u32,
-    first_class: u32,
+    kind: u32,
+    first_kind: u32,
     interfaces: u32,
     searches: u32,
     // Four bits a search.
@@ -68,6 +68,11 @@ fn advance(path: ptr<function, Path>, t: f32) {
     (*path).position += t * (*path).direction;
 }
 
+// How far behind a liquid's surface an opaque one still counts as wetted by it: no air between.
+fn contact(direction: vec3<f32>, n: vec3<f32>) -> f32 {
+    return body.contact / max(abs(dot(direction, n)), 0.25);
+}
+
 // Looks for opaque things up to `t`; if one is met the path ends there.
 fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     let met = meets_scene((*path).position, (*path).direction, t);
@@ -83,9 +88,9 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     return true;
 }
 
-// The straight way through one class at its own pixel, cut short by opaque things.
-fn straight_length(class: u32, pixel: vec2<i32>, ndc: vec2<f32>, along: vec3<f32>) -> f32 {
-    let layers = load_layers(class, pixel);
+// The straight way through one kind at its own pixel, cut short by opaque things.
+fn straight_length(kind: u32, pixel: vec2<i32>, ndc: vec2<f32>, along: vec3<f32>) -> f32 {
+    let layers = load_layers(kind, pixel);
     if !has_front(layers) || !has_back(layers) {
         return 0.0;
     }
@@ -106,18 +111,19 @@ fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
             return;
         }
         let found = search(
-            Target((*path).class, true, both, false), (*path).position, (*path).direction,
+            Target((*path).kind, true, both, false), (*path).position, (*path).direction,
         );
         if found.status == STATUS_INVALID || found.status == STATUS_NO_BRACKET {
             note(path, found.status);
             return;
         }
-        if stops(path, found.t, true) {
+        let hit = (*path).position + found.t * (*path).direction;
+        let n = layer_normal((*path).kind, found.side, pixel_of(hit));
+        if stops(path, found.t + contact((*path).direction, n), true) {
             return;
         }
         (*path).transmission *= transmitted(found.t);
-        advance(path, found.t);
-        let n = layer_normal((*path).class, found.side, pixel_of((*path).position));
+        (*path).position = hit;
         if !cross_interface(path, n, false) {
             note(path, STATUS_TOTAL_REFLECTION);
             both = true;
@@ -128,8 +134,8 @@ fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
             return;
         }
         may_enter = false;
-        let class = 1u - (*path).class;
-        let next = search(Target(class, false, false, false), (*path).position, (*path).direction);
+        let kind = 1u - (*path).kind;
+        let next = search(Target(kind, false, false, false), (*path).position, (*path).direction);
         if next.status != STATUS_HIT {
             note(path, next.status);
             return;
@@ -139,8 +145,8 @@ fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
         }
         note(path, STATUS_HIT);
         advance(path, next.t);
-        (*path).class = class;
-        let entry = layer_normal(class, FRONT, pixel_of((*path).position));
+        (*path).kind = kind;
+        let entry = layer_normal(kind, FRONT, pixel_of((*path).position));
         if !cross_interface(path, entry, true) {
             return;
         }
@@ -150,12 +156,12 @@ fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
 
 // (screen position, device depth, direction, flags): position as two 16-bit fractions of the
 // viewport, direction octahedral in view space. Flags: bits 0–15 search statuses, 16–18
-// interfaces met, 19 direct, 20 first class, 31 there is liquid.
+// interfaces met, 19 direct, 20 first kind, 31 there is liquid.
 fn pack_exit(path: Path) -> vec4<u32> {
     let device = device_from_view(path.position);
     let uv = clamp(device.xy * vec2(0.5, -0.5) + 0.5, vec2(0.0), vec2(1.0));
     let flags = path.status | (path.interfaces << 16u) | (select(0u, 1u, path.direct) << 19u)
-        | (path.first_class << 20u) | (1u << 31u);
+        | (path.first_kind << 20u) | (1u << 31u);
     return vec4(
         pack2x16unorm(uv),
         bitcast<u32>(device.z),
@@ -175,14 +181,14 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
         discard;
     }
     var path: Path;
-    path.first_class = select(SPRAY, BULK, bulk.x >= spray.x);
-    path.class = path.first_class;
+    path.first_kind = select(SPRAY, BULK, bulk.x >= spray.x);
+    path.kind = path.first_kind;
     path.transmission = vec3(1.0);
     let ray = view_ray(ndc);
     path.direction = ray.direction;
     let starts_inside = front >= INSIDE_FRONT;
     path.position = select(view_from_device(ndc, front), ray.origin, starts_inside);
-    let first_normal = load_normal(path.class, FRONT, pixel);
+    let first_normal = load_normal(path.kind, FRONT, pixel);
 
 #ifdef INDEX_ONE
     path.direct = true;
@@ -214,7 +220,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
             advance(&path, straight);
         }
     } else {
-        let other = 1u - path.class;
+        let other = 1u - path.kind;
         trace(&path, starts_inside, has_front(load_layers(other, pixel)) || INTERFACES > 2u);
     }
 #endif

@@ -12,7 +12,7 @@
 
 // What a ray is looking for.
 struct Target {
-    class: u32,
+    kind: u32,
     // Leaving the liquid: the back layer, and with `both` the front layer as well (after a total
     // reflection a ray may come back). Otherwise entering: the front layer.
     leaving: bool,
@@ -28,7 +28,7 @@ struct Gap {
     known: bool,
     value: f32,
     side: u32,
-    on_screen: bool,
+    seen: bool,
 }
 
 struct Found {
@@ -50,7 +50,7 @@ fn gap_at(to: Target, position: vec3<f32>) -> Gap {
     let pixel = pixel_of(position);
     let z = -position.z;
     var out = Gap(false, select(-1.0, 1.0, to.leaving), select(FRONT, BACK, to.leaving), on_screen(pixel));
-    if !out.on_screen {
+    if !out.seen {
         return out;
     }
     if to.scene {
@@ -60,19 +60,19 @@ fn gap_at(to: Target, position: vec3<f32>) -> Gap {
         return out;
     }
     if !to.leaving {
-        let front = layer_depth(to.class, FRONT, pixel);
+        let front = layer_depth(to.kind, FRONT, pixel);
         out.known = front.there;
         out.value = select(-1.0, z - front.z, front.there);
         return out;
     }
-    let back = layer_depth(to.class, BACK, pixel);
+    let back = layer_depth(to.kind, BACK, pixel);
     if !back.there {
         return out;
     }
     out.known = true;
     out.value = z - back.z;
     if to.both {
-        let front = layer_depth(to.class, FRONT, pixel);
+        let front = layer_depth(to.kind, FRONT, pixel);
         if front.there && front.z - z > out.value {
             out.value = front.z - z;
             out.side = FRONT;
@@ -177,7 +177,7 @@ fn search_bracketed(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: 
         }
         b.low = t;
         b.low_gap = gap;
-        if !gap.on_screen {
+        if !gap.seen {
             break;
         }
         if u32(i + 1) >= body.coarse_samples {
@@ -237,8 +237,8 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
         if to.both {
             // On a surface by construction: take the first step on trust.
             inside.value = min(inside.value, -0.01 * body.radius);
-            let back = layer_depth(to.class, BACK, pixel_of(origin));
-            let front = layer_depth(to.class, FRONT, pixel_of(origin));
+            let back = layer_depth(to.kind, BACK, pixel_of(origin));
+            let front = layer_depth(to.kind, FRONT, pixel_of(origin));
             guess = max(guess, select(0.0, back.z - front.z, front.there));
         } else {
             if start.value >= -tolerance(origin) {

@@ -45,3 +45,36 @@ pub fn frame_camera(inside: Aabb3d, fov: f32, aspect: f32) -> (Vec3, Vec3) {
         .fold(0.0, f32::max);
     (target + view.back() * distance, target)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_corner_is_in_view_and_one_nearly_at_the_border() {
+        let inside = Aabb3d::new(Vec3::new(3.0, -1.0, 2.0), Vec3::new(2.0, 0.5, 1.0));
+        for (fov, aspect) in [(0.8_f32, 1.8), (0.4, 0.5), (1.5, 1.0)] {
+            let (eye, target) = frame_camera(inside, fov, aspect);
+            let view_from_world = Mat4::look_at_rh(eye, target, Vec3::Y);
+            let clip_from_view = Mat4::perspective_rh(fov, aspect, 0.1, 100.0);
+            let farthest = (0..8)
+                .map(|corner| {
+                    let of = |axis| {
+                        if corner >> axis & 1 == 0 {
+                            inside.min
+                        } else {
+                            inside.max
+                        }
+                    };
+                    let corner = Vec3::new(of(0).x, of(1).y, of(2).z);
+                    (clip_from_view * view_from_world)
+                        .project_point3(corner)
+                        .truncate()
+                        .abs()
+                        .max_element()
+                })
+                .fold(0.0, f32::max);
+            assert!((0.75..1.0).contains(&farthest), "{farthest}");
+        }
+    }
+}
