@@ -19,7 +19,8 @@ use super::{
     extract::GpuSplats,
     normals::NormalsPipeline,
     refract::RefractPipeline,
-    scene_copy::Placeholders,
+    scene_depth::SceneDepthPipelines,
+    scene_textures::Placeholders,
     smooth::SmoothPipeline,
     splat::SplatPipeline,
 };
@@ -30,6 +31,7 @@ pub(crate) struct Sources<'w> {
     cache: Res<'w, PipelineCache>,
     device: Res<'w, RenderDevice>,
     views: Res<'w, ViewUniforms>,
+    scene_depth: Res<'w, SceneDepthPipelines>,
     uniforms: Res<'w, FluidUniforms>,
     splat: Res<'w, SplatPipeline>,
     smooth: Res<'w, SmoothPipeline>,
@@ -64,16 +66,22 @@ pub(crate) fn prepare_body_bind_groups(
     sources: Sources,
 ) {
     for (mut view, prepass) in &mut views {
-        let Some(scene_depth) = prepass.depth_view() else {
+        let Some(prepass_depth) = prepass.depth_view() else {
             continue;
         };
-        let multisampled = view.multisampled;
+        view.scene_depth_group = Some(sources.scene_depth.bind_group(
+            &sources.device,
+            &sources.cache,
+            view.multisampled,
+            prepass_depth,
+        ));
+        let scene_depth = view.scene_depth.default_view.clone();
         let scene_color = view
             .scene_color
             .as_ref()
             .map(|copy| copy.default_view.clone());
         for body in &mut view.bodies {
-            body.groups.common = sources.common(multisampled, scene_depth);
+            body.groups.common = sources.common(&scene_depth);
             body.groups.merge = sources.merge(body);
             body.groups.smooth = body.steps.bind_groups(
                 &sources.device,
@@ -94,10 +102,8 @@ pub(crate) fn prepare_body_bind_groups(
 }
 
 impl Sources<'_> {
-    fn common(&self, multisampled: bool, scene_depth: &TextureView) -> Option<BindGroup> {
-        let layout = self
-            .cache
-            .get_bind_group_layout(&common_layout(multisampled));
+    fn common(&self, scene_depth: &TextureView) -> Option<BindGroup> {
+        let layout = self.cache.get_bind_group_layout(&common_layout());
         Some(self.device.create_bind_group(
             "fluid_common",
             &layout,

@@ -8,9 +8,7 @@ use bevy::{
             BlendOperation, BlendState, ColorTargetState, ColorWrites, FragmentState, LoadOp,
             Operations, RenderPassColorAttachment, ShaderStages, StoreOp, TextureFormat,
             TextureSampleType, TextureView,
-            binding_types::{
-                texture_2d, texture_depth_2d, texture_depth_2d_multisampled, uniform_buffer,
-            },
+            binding_types::{texture_2d, uniform_buffer},
         },
         view::ViewUniform,
     },
@@ -19,27 +17,19 @@ use bevy::{
 
 use super::gpu_types::GpuBody;
 
-/// The layout of group 0, for views with and without multisampling.
-pub(crate) fn common_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
-    let stages = ShaderStages::VERTEX_FRAGMENT;
-    let (view, body) = (
-        uniform_buffer::<ViewUniform>(true),
-        uniform_buffer::<GpuBody>(true),
-    );
-    if multisampled {
-        BindGroupLayoutDescriptor::new(
-            "fluid_common_multisampled_layout",
-            &BindGroupLayoutEntries::sequential(
-                stages,
-                (view, body, texture_depth_2d_multisampled()),
+/// The layout of group 0.
+pub(crate) fn common_layout() -> BindGroupLayoutDescriptor {
+    BindGroupLayoutDescriptor::new(
+        "fluid_common_layout",
+        &BindGroupLayoutEntries::sequential(
+            ShaderStages::VERTEX_FRAGMENT,
+            (
+                uniform_buffer::<ViewUniform>(true),
+                uniform_buffer::<GpuBody>(true),
+                texture_2d(TextureSampleType::Float { filterable: false }),
             ),
-        )
-    } else {
-        BindGroupLayoutDescriptor::new(
-            "fluid_common_layout",
-            &BindGroupLayoutEntries::sequential(stages, (view, body, texture_depth_2d())),
-        )
-    }
+        ),
+    )
 }
 
 /// The layout of a pass that reads one texture of 32-bit floats.

@@ -6,9 +6,5 @@
 // What every pass of a body in a view sees.
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<uniform> body: GpuBody;
-// The opaque scene's depth prepass.
-#ifdef MULTISAMPLED
-@group(0) @binding(2) var scene_depth: texture_depth_multisampled_2d;
-#else
-@group(0) @binding(2) var scene_depth: texture_depth_2d;
-#endif
+// The opaque scene's depth: (nearest, farthest) of a pixel's samples.
+@group(0) @binding(2) var scene_depth: texture_2d<f32>;

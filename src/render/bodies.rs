@@ -25,12 +25,13 @@ use super::{
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
     gpu_types::{GpuBody, GpuFluid},
     layers::Layers,
-    normals::{NormalSource, NormalsKey, NormalsPipeline},
+    normals::{NormalSource, NormalsPipeline},
     plan::{Plan, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
-    scene_copy::{Placeholders, scene_copy},
+    scene_depth::SCENE_DEPTH_FORMAT,
+    scene_textures::{Placeholders, view_texture},
     smooth::{SmoothPipeline, SmoothSteps, window_radii},
-    splat::{SplatKey, SplatOutput, SplatPipeline, SplatPipelines},
+    splat::{SplatOutput, SplatPipeline, SplatPipelines},
     support::FluidSupport,
 };
 use crate::{
@@ -126,6 +127,8 @@ pub struct ViewBodies {
     pub bodies: Vec<Body>,
     pub(crate) viewport: URect,
     pub(crate) scene_color: Option<CachedTexture>,
+    pub(crate) scene_depth: CachedTexture,
+    pub(crate) scene_depth_group: Option<BindGroup>,
     pub(crate) multisampled: bool,
 }
 
@@ -161,20 +164,13 @@ pub(crate) struct Pipelines<'w> {
 }
 
 impl Pipelines<'_> {
-    fn splat(&mut self, output: SplatOutput, multisampled: bool) -> CachedRenderPipelineId {
-        let key = SplatKey {
-            output,
-            multisampled,
-        };
-        self.splats.specialize(&self.cache, &self.splat, key)
+    fn splat(&mut self, output: SplatOutput) -> CachedRenderPipelineId {
+        self.splats.specialize(&self.cache, &self.splat, output)
     }
 
-    fn normals(&mut self, source: NormalSource, multisampled: bool) -> CachedRenderPipelineId {
-        let key = NormalsKey {
-            source,
-            multisampled,
-        };
-        self.normalses.specialize(&self.cache, &self.normals, key)
+    fn normals(&mut self, source: NormalSource) -> CachedRenderPipelineId {
+        self.normalses
+            .specialize(&self.cache, &self.normals, source)
     }
 
     fn of(
@@ -185,13 +181,12 @@ impl Pipelines<'_> {
         max_blend: bool,
         composite: CompositeKey,
     ) -> BodyPipelines {
-        let multisampled = composite.samples > 1;
         let splat = if max_blend {
-            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers, multisampled))
+            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers))
         } else {
             SplatPipelines::DepthDraws {
-                front: self.splat(SplatOutput::FrontDepth, multisampled),
-                back: self.splat(SplatOutput::BackDepth, multisampled),
+                front: self.splat(SplatOutput::FrontDepth),
+                back: self.splat(SplatOutput::BackDepth),
                 merge: self.splat.merge,
             }
         };
@@ -203,15 +198,12 @@ impl Pipelines<'_> {
             index_one: plan.index_one,
             secant: plan.interfaces > 1 && settings.search == Search::Secant,
             schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
-            multisampled,
         };
         BodyPipelines {
             splat,
-            smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth, multisampled),
-            bulk_normals: depth_normals.then(|| self.normals(NormalSource::Depth, multisampled)),
-            spray_normals: plan
-                .spray
-                .then(|| self.normals(NormalSource::Ellipsoids, multisampled)),
+            smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
+            bulk_normals: depth_normals.then(|| self.normals(NormalSource::Depth)),
+            spray_normals: plan.spray.then(|| self.normals(NormalSource::Ellipsoids)),
             refract: self
                 .refracts
                 .specialize(&self.cache, &self.refract, refract),
@@ -372,12 +364,16 @@ pub(crate) fn prepare_bodies(
             continue;
         }
         bodies.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        let mut texture =
+            |label, format| view_texture(&mut textures, &device, label, target_size, format);
         commands.entity(entity).insert(ViewBodies {
             bodies: bodies.into_iter().map(|(_, body)| body).collect(),
             viewport: URect::from_corners(viewport.xy(), viewport.xy() + viewport.zw()),
             scene_color: debug_view
                 .is_none()
-                .then(|| scene_copy(&mut textures, &device, target_size, view.target_format)),
+                .then(|| texture("fluid_scene_color", view.target_format)),
+            scene_depth: texture("fluid_scene_depth", SCENE_DEPTH_FORMAT),
+            scene_depth_group: None,
             multisampled: msaa.samples() > 1,
         });
     }

@@ -81,30 +81,14 @@ fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> 
     return normalize(view_plane.xyz);
 }
 
-// Nearest of a pixel's samples; depths are never averaged across them.
+// Nearest of a pixel's samples.
 fn nearest_scene_depth(pixel: vec2<i32>) -> f32 {
-#ifdef MULTISAMPLED
-    var depth = 0.0;
-    for (var i = 0; i < i32(textureNumSamples(scene_depth)); i += 1) {
-        depth = max(depth, textureLoad(scene_depth, pixel, i));
-    }
-    return depth;
-#else
-    return textureLoad(scene_depth, pixel, 0);
-#endif
+    return textureLoad(scene_depth, pixel, 0).x;
 }
 
 // Farthest of a pixel's samples: what is behind it is hidden in every one of them.
 fn farthest_scene_depth(pixel: vec2<i32>) -> f32 {
-#ifdef MULTISAMPLED
-    var depth = 1.0;
-    for (var i = 0; i < i32(textureNumSamples(scene_depth)); i += 1) {
-        depth = min(depth, textureLoad(scene_depth, pixel, i));
-    }
-    return depth;
-#else
-    return textureLoad(scene_depth, pixel, 0);
-#endif
+    return textureLoad(scene_depth, pixel, 0).y;
 }
 
 // Unit vectors in two numbers in −1..=1 (octahedral mapping, Meyer et al. 2010).

@@ -3,10 +3,7 @@
 use bevy::{
     prelude::*,
     render::{
-        render_resource::{
-            Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
-            TextureView,
-        },
+        render_resource::{Texture, TextureFormat, TextureView},
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
@@ -14,6 +11,7 @@ use bevy::{
 
 use super::{
     plan::Plan,
+    scene_textures::view_texture,
     smooth::SmoothSteps,
     support::{FluidSupport, LAYER_FORMAT},
 };
@@ -59,27 +57,7 @@ impl Layers {
         support: &FluidSupport,
         placeholder: &CachedTexture,
     ) -> Self {
-        let mut texture = |label, format| {
-            cache.get(
-                device,
-                TextureDescriptor {
-                    label: Some(label),
-                    size: Extent3d {
-                        width: size.x,
-                        height: size.y,
-                        depth_or_array_layers: 1,
-                    },
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: TextureDimension::D2,
-                    format,
-                    usage: TextureUsages::RENDER_ATTACHMENT
-                        | TextureUsages::TEXTURE_BINDING
-                        | TextureUsages::COPY_SRC,
-                    view_formats: &[],
-                },
-            )
-        };
+        let mut texture = |label, format| view_texture(cache, device, label, size, format);
         let mut class = |there: bool, label, normals| {
             if there {
                 (

@@ -11,7 +11,8 @@ mod layers;
 mod normals;
 mod plan;
 mod refract;
-mod scene_copy;
+mod scene_depth;
+mod scene_textures;
 mod smooth;
 mod splat;
 mod support;
@@ -62,6 +63,7 @@ impl Plugin for FluidRenderPlugin {
         load_shader_library!(app, "smooth/window.wgsl");
         load_shader_library!(app, "refract/layers.wgsl");
         load_shader_library!(app, "refract/search.wgsl");
+        embedded_asset!(app, "scene_depth/resolve.wgsl");
         embedded_asset!(app, "splat/splat.wgsl");
         embedded_asset!(app, "splat/merge.wgsl");
         embedded_asset!(app, "smooth/plane_fit.wgsl");
@@ -94,7 +96,8 @@ impl Plugin for FluidRenderPlugin {
                 RenderStartup,
                 (
                     support::init_support,
-                    scene_copy::init_placeholders,
+                    scene_textures::init_placeholders,
+                    scene_depth::init_scene_depth_pipelines,
                     (splat::init_splat_pipeline, normals::init_normals_pipeline).chain(),
                     smooth::init_smooth_pipeline,
                     refract::init_refract_pipeline,
@@ -128,6 +131,7 @@ impl Plugin for FluidRenderPlugin {
                 Core3d,
                 (
                     (
+                        scene_depth::scene_depth,
                         splat::splat,
                         smooth::smooth,
                         normals::normals,

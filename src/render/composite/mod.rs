@@ -90,10 +90,8 @@ impl SpecializedRenderPipeline for CompositePipeline {
     type Key = CompositeKey;
 
     fn specialize(&self, key: CompositeKey) -> RenderPipelineDescriptor {
-        let multisampled = key.samples > 1;
         let is = |view| key.debug_view == Some(view);
         let shader_defs = defs([
-            ("MULTISAMPLED", multisampled),
             ("BULK_FRONT", is(FluidDebugView::BulkFront)),
             ("BULK_BACK", is(FluidDebugView::BulkBack)),
             ("SPRAY_FRONT", is(FluidDebugView::SprayFront)),
@@ -113,7 +111,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
         };
         RenderPipelineDescriptor {
             label: Some("fluid_composite_pipeline".into()),
-            layout: vec![common_layout(multisampled), layout.clone()],
+            layout: vec![common_layout(), layout.clone()],
             vertex: self.fullscreen.clone(),
             depth_stencil: Some(DepthStencilState {
                 format: CORE_3D_DEPTH_FORMAT,

@@ -23,13 +23,13 @@ fn slope(pixel: vec2<i32>, center: vec2<f32>, step: vec2<i32>) -> vec2<f32> {
     let before = value_at(pixel - step);
     let after = value_at(pixel + step);
     let to = after - center;
-    let from = center - before;
+    let behind = center - before;
     let to_ok = there(after);
-    let from_ok = there(before);
-    let smaller = select(to, from, abs(from) < abs(to));
+    let behind_ok = there(before);
+    let smaller = select(to, behind, abs(behind) < abs(to));
     return select(
-        select(vec2(0.0), from, from_ok),
-        select(to, smaller, from_ok),
+        select(vec2(0.0), behind, behind_ok),
+        select(to, smaller, behind_ok),
         to_ok,
     );
 }

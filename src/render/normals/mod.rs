@@ -19,7 +19,7 @@ use bevy::{
 };
 
 use super::{
-    bindings::{MAX_BLEND, cleared, common_layout, defs, fragment, one_texture_layout},
+    bindings::{MAX_BLEND, cleared, common_layout, fragment, one_texture_layout},
     bodies::ViewBodies,
     extract::GpuSplats,
     layers::NORMAL_FORMAT,
@@ -33,12 +33,6 @@ pub(crate) enum NormalSource {
     Depth,
     /// The ellipsoids that made the layer.
     Ellipsoids,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct NormalsKey {
-    pub(crate) source: NormalSource,
-    pub(crate) multisampled: bool,
 }
 
 #[derive(Resource)]
@@ -78,12 +72,12 @@ impl NormalsPipeline {
 }
 
 impl SpecializedRenderPipeline for NormalsPipeline {
-    type Key = NormalsKey;
+    type Key = NormalSource;
 
-    fn specialize(&self, key: NormalsKey) -> RenderPipelineDescriptor {
-        let shader_defs = defs([("MULTISAMPLED", key.multisampled)]);
-        let common = common_layout(key.multisampled);
-        match key.source {
+    fn specialize(&self, source: NormalSource) -> RenderPipelineDescriptor {
+        let shader_defs = vec![];
+        let common = common_layout();
+        match source {
             NormalSource::Depth => RenderPipelineDescriptor {
                 label: Some("fluid_depth_normals_pipeline".into()),
                 layout: vec![common, self.layout.clone()],

@@ -30,7 +30,7 @@ fn fragment(in: EllipsoidVertex) -> @location(0) vec4<f32> {
     }
     let front = same.x && found.layers.x < INSIDE_FRONT;
     return vec4(
-        select(NONE, encode_normal(found.front_normal), front),
-        select(NONE, encode_normal(-found.back_normal), same.y),
+        select(NONE, encode_normal(normalize(found.front_normal)), front),
+        select(NONE, encode_normal(normalize(found.back_normal)), same.y),
     );
 }

@@ -31,7 +31,6 @@ pub(crate) struct RefractKey {
     pub(crate) index_one: bool,
     pub(crate) secant: bool,
     pub(crate) schlick: bool,
-    pub(crate) multisampled: bool,
 }
 
 #[derive(Resource)]
@@ -73,7 +72,6 @@ impl SpecializedRenderPipeline for RefractPipeline {
 
     fn specialize(&self, key: RefractKey) -> RenderPipelineDescriptor {
         let mut shader_defs = defs([
-            ("MULTISAMPLED", key.multisampled),
             ("BULK_LAYERS", key.bulk),
             ("SPRAY_LAYERS", key.spray),
             ("INDEX_ONE", key.index_one),
@@ -83,7 +81,7 @@ impl SpecializedRenderPipeline for RefractPipeline {
         shader_defs.push(ShaderDefVal::UInt("INTERFACES".into(), key.interfaces));
         RenderPipelineDescriptor {
             label: Some("fluid_refract_pipeline".into()),
-            layout: vec![common_layout(key.multisampled), self.layout.clone()],
+            layout: vec![common_layout(), self.layout.clone()],
             vertex: self.fullscreen.clone(),
             fragment: Some(fragment(
                 &self.shader,

@@ -49,7 +49,6 @@ pub(crate) struct SmoothKey {
     pub(crate) kernel: SmoothKernel,
     pub(crate) target: SmoothTarget,
     pub(crate) half_taps: u32,
-    pub(crate) multisampled: bool,
 }
 
 #[derive(Resource)]
@@ -80,7 +79,6 @@ impl SpecializedRenderPipeline for SmoothPipeline {
 
     fn specialize(&self, key: SmoothKey) -> RenderPipelineDescriptor {
         let mut shader_defs = defs([
-            ("MULTISAMPLED", key.multisampled),
             ("NORMALS", key.target == SmoothTarget::Normals),
             ("WHOLE_WINDOW", key.kernel == SmoothKernel::DeviceDepth),
         ]);
@@ -103,7 +101,7 @@ impl SpecializedRenderPipeline for SmoothPipeline {
         };
         RenderPipelineDescriptor {
             label: Some("fluid_smooth_pipeline".into()),
-            layout: vec![common_layout(key.multisampled), self.layout.clone()],
+            layout: vec![common_layout(), self.layout.clone()],
             vertex: self.fullscreen.clone(),
             fragment: Some(fragment(shader, shader_defs, formats, None)),
             ..default()
@@ -218,13 +216,11 @@ impl SmoothSteps {
         cache: &PipelineCache,
         pipelines: &mut SpecializedRenderPipelines<SmoothPipeline>,
         pipeline: &SmoothPipeline,
-        multisampled: bool,
     ) -> Vec<CachedRenderPipelineId> {
         let key = |step: &Step| SmoothKey {
             kernel: step.kernel,
             target: step.target,
             half_taps: self.half_taps,
-            multisampled,
         };
         self.steps
             .iter()

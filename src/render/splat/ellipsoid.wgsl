@@ -2,26 +2,38 @@
 #define_import_path bevy_fluid::render::splat::ellipsoid
 
 #import bevy_fluid::render::bindings::view
-#import bevy_fluid::render::functions::{device_from_view, ndc_from_pixel, view_ray}
-#import bevy_fluid::render::types::{GpuFluid, INSIDE_FRONT, NO_BACK, NO_FRONT, Splat}
+#import bevy_fluid::render::functions::{
+    device_from_view, ndc_from_pixel, pixel_from_ndc, view_ray,
+}
+#import bevy_fluid::render::types::{GpuFluid, INSIDE_FRONT, Splat}
 
 @group(1) @binding(0) var<storage, read> splats: array<Splat>;
 @group(1) @binding(1) var<uniform> fluid: GpuFluid;
 
+// An ellipsoid as every pixel of its quad sees it, in one of two forms.
+//
+// `form` 0, wholly in front of the near plane: a quadric about the projected centre. With X, Y in
+// pixels and D in device depth from there, the homogeneous point of the unit sphere's space is
+// X·x + Y·y + D·d + (0, 0, 0, 1); it is on the sphere where its form xyz² − w² is zero. A
+// projective map takes quadrics to quadrics, and moving the origin to the centre keeps the
+// digits (METHOD 3).
+// `form` 1, cut by the near plane: columns of the map from view space to the unit sphere's, and
+// the centre in view space, each in the xyz of the same fields.
 struct EllipsoidVertex {
     @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) center: vec3<f32>,
-    // Columns of the map from view space to the unit sphere.
-    @location(1) @interpolate(flat) inverse_x: vec3<f32>,
-    @location(2) @interpolate(flat) inverse_y: vec3<f32>,
-    @location(3) @interpolate(flat) inverse_z: vec3<f32>,
+    @location(0) @interpolate(flat) x: vec4<f32>,
+    @location(1) @interpolate(flat) y: vec4<f32>,
+    @location(2) @interpolate(flat) d: vec4<f32>,
+    // Form 0: projected centre in pixels and device depth.
+    @location(3) @interpolate(flat) center: vec3<f32>,
+    @location(4) @interpolate(flat) form: u32,
 }
 
 struct Intersection {
     hit: bool,
     // (front, −back) as the layers hold them.
     layers: vec2<f32>,
-    // Outward, in view space; the front one is zero where the ray starts inside.
+    // Towards the viewer, in view space, not normalised: read by the spray's normals alone.
     front_normal: vec3<f32>,
     back_normal: vec3<f32>,
 }
@@ -94,12 +106,13 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     let from_eye = local_linear * splat.center + (fluid.world_from_local[3].xyz - view.world_position);
     let center = view_linear * from_eye;
     let shape = view_linear * local_linear * axes_matrix(splat);
-    let inverse = inverse3(shape) * (1.0 / splat.scale);
     let axes = shape * splat.scale;
 
+    // Rows of the map from the unit sphere's space to clip space.
     let rows = transpose(view.clip_from_view);
     let x = vec4(rows[0].xyz * axes, dot(rows[0], vec4(center, 1.0)));
     let y = vec4(rows[1].xyz * axes, dot(rows[1], vec4(center, 1.0)));
+    let z = vec4(rows[2].xyz * axes, dot(rows[2], vec4(center, 1.0)));
     let w = vec4(rows[3].xyz * axes, dot(rows[3], vec4(center, 1.0)));
     let near_point = view.view_from_clip * vec4(0.0, 0.0, 1.0, 1.0);
     let near = dot(rows[3], near_point / near_point.w);
@@ -112,20 +125,85 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     let slack = 0.02 * 2.0 / view.main_pass_viewport.zw;
     let low = max(vec2(bound_x.x, bound_y.x) - slack, vec2(-1.5));
     let high = min(vec2(bound_x.y, bound_y.y) + slack, vec2(1.5));
-    let ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
-    out.position = select(vec4(2.0, 2.0, 0.5, 1.0), vec4(ndc, 0.5, 1.0), seen);
-    out.center = center;
-    out.inverse_x = inverse[0];
-    out.inverse_y = inverse[1];
-    out.inverse_z = inverse[2];
+    let corner_ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
+    out.position = select(vec4(2.0, 2.0, 0.5, 1.0), vec4(corner_ndc, 0.5, 1.0), seen);
+
+    if z.w - w.w + length(z.xyz - w.xyz) >= 0.0 {
+        // Some of it has z > w: nearer than the near plane.
+        let inverse = inverse3(shape) * (1.0 / splat.scale);
+        out.form = 1u;
+        out.x = vec4(inverse[0], 0.0);
+        out.y = vec4(inverse[1], 0.0);
+        out.d = vec4(inverse[2], 0.0);
+        out.center = center;
+    } else {
+        let device = vec3(x.w, y.w, z.w) / w.w;
+        // Device coordinates about the centre, to first order: rows of the map from the sphere.
+        let about = transpose(mat3x3(
+            x.xyz - device.x * w.xyz, y.xyz - device.y * w.xyz, z.xyz - device.z * w.xyz,
+        )) * (1.0 / w.w);
+        let sphere = inverse3(about);
+        let ndc_per_pixel = vec2(2.0, -2.0) / view.main_pass_viewport.zw;
+        let perspective = -w.xyz / w.w;
+        let dx = sphere[0] * ndc_per_pixel.x;
+        let dy = sphere[1] * ndc_per_pixel.y;
+        out.form = 0u;
+        out.x = vec4(dx, dot(perspective, dx));
+        out.y = vec4(dy, dot(perspective, dy));
+        out.d = vec4(sphere[2], dot(perspective, sphere[2]));
+        out.center = vec3(pixel_from_ndc(device.xy), device.z);
+    }
     return out;
 }
 
-// Both crossings of a pixel's ray from one quadratic: Haines' form about the point of the ray
-// that is closest to the centre (METHOD 3).
 fn intersect(in: EllipsoidVertex) -> Intersection {
+    if in.form == 0u {
+        return intersect_quadric(in);
+    }
+    return intersect_near(in);
+}
+
+// The unit sphere's quadratic form.
+fn form(a: vec4<f32>, b: vec4<f32>) -> f32 {
+    return dot(a.xyz, b.xyz) - a.w * b.w;
+}
+
+// The normal of the surface through a point `a` of the sphere's space: its polar plane.
+fn polar_normal(in: EllipsoidVertex, a: vec4<f32>, ndc: vec2<f32>, depth: f32) -> vec3<f32> {
+    let pixels_per_ndc = view.main_pass_viewport.zw * vec2(0.5, -0.5);
+    let gradient = vec3(vec2(form(a, in.x), form(a, in.y)) * pixels_per_ndc, form(a, in.d));
+    let plane = vec4(gradient, -dot(gradient, vec3(ndc, depth)));
+    return (plane * view.clip_from_view).xyz;
+}
+
+// Both depths from one quadratic, about the point half way between them.
+fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     var out: Intersection;
-    let inverse = mat3x3(in.inverse_x, in.inverse_y, in.inverse_z);
+    let offset = in.position.xy - in.center.xy;
+    let a = vec4(0.0, 0.0, 0.0, 1.0) + offset.x * in.x + offset.y * in.y;
+    let dd = form(in.d, in.d);
+    let middle = -form(a, in.d) / dd;
+    let nearest = a + middle * in.d;
+    let disc = -form(nearest, nearest);
+    let half_chord = sqrt(max(disc, 0.0) / dd);
+    let front = in.center.z + (middle + half_chord);
+    let back = in.center.z + (middle - half_chord);
+    // Not beyond an orthographic far plane, and a number at all.
+    out.hit = disc >= 0.0 && front > 0.0;
+    // A front is kept a step below INSIDE_FRONT, which has a meaning of its own.
+    out.layers = vec2(min(front, 0.9999999), -clamp(back, 1e-30, 1.0));
+    let ndc = ndc_from_pixel(in.position.xy);
+    out.front_normal = polar_normal(in, nearest + half_chord * in.d, ndc, front);
+    // Outward is away from the viewer there.
+    out.back_normal = -polar_normal(in, nearest - half_chord * in.d, ndc, back);
+    return out;
+}
+
+// The same in view space, for rays that may start inside: Haines' form about the point of the ray
+// that is closest to the centre (METHOD 3).
+fn intersect_near(in: EllipsoidVertex) -> Intersection {
+    var out: Intersection;
+    let inverse = mat3x3(in.x.xyz, in.y.xyz, in.d.xyz);
     let ray = view_ray(ndc_from_pixel(in.position.xy));
     let closest = dot(in.center - ray.origin, ray.direction);
     let o = inverse * (ray.origin + closest * ray.direction - in.center);
@@ -138,24 +216,14 @@ fn intersect(in: EllipsoidVertex) -> Intersection {
     let half_chord = sqrt(max(disc, 0.0) / a);
     let t_front = middle - half_chord;
     let t_back = middle + half_chord;
-    // Behind the near plane altogether, or not a number.
+    // Not behind the near plane altogether, and a number at all.
     out.hit = disc >= 0.0 && t_back > 0.0;
 
     let back = ray.origin + t_back * ray.direction;
-    let back_depth = device_from_view(back).z;
-    out.layers.y = -clamp(back_depth, 1e-30, 1.0);
-    out.back_normal = normalize(transpose(inverse) * (inverse * (back - in.center)));
-    if t_front > 0.0 {
-        let front = ray.origin + t_front * ray.direction;
-        let front_depth = device_from_view(front).z;
-        // Beyond an orthographic far plane.
-        out.hit = out.hit && front_depth > 0.0;
-        // Kept a step below INSIDE_FRONT, which has a meaning of its own.
-        out.layers.x = min(front_depth, 0.9999999);
-        out.front_normal = normalize(transpose(inverse) * (inverse * (front - in.center)));
-    } else {
-        out.layers.x = INSIDE_FRONT;
-        out.front_normal = vec3(0.0);
-    }
+    out.layers.y = -clamp(device_from_view(back).z, 1e-30, 1.0);
+    out.back_normal = -(transpose(inverse) * (inverse * (back - in.center)));
+    let front = ray.origin + t_front * ray.direction;
+    out.layers.x = select(INSIDE_FRONT, min(device_from_view(front).z, 0.9999999), t_front > 0.0);
+    out.front_normal = transpose(inverse) * (inverse * (front - in.center));
     return out;
 }

@@ -43,12 +43,6 @@ pub(crate) enum SplatOutput {
     BackDepth,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct SplatKey {
-    pub(crate) output: SplatOutput,
-    pub(crate) multisampled: bool,
-}
-
 #[derive(Resource)]
 pub(crate) struct SplatPipeline {
     pub(crate) shader: Handle<Shader>,
@@ -112,23 +106,22 @@ pub(crate) const SPLAT_QUAD: PrimitiveState = PrimitiveState {
 };
 
 impl SpecializedRenderPipeline for SplatPipeline {
-    type Key = SplatKey;
+    type Key = SplatOutput;
 
-    fn specialize(&self, key: SplatKey) -> RenderPipelineDescriptor {
+    fn specialize(&self, output: SplatOutput) -> RenderPipelineDescriptor {
         let shader_defs = defs([
-            ("MULTISAMPLED", key.multisampled),
-            ("MAX_BLEND", key.output == SplatOutput::Layers),
-            ("DEPTH_FRONT", key.output == SplatOutput::FrontDepth),
-            ("DEPTH_BACK", key.output == SplatOutput::BackDepth),
+            ("MAX_BLEND", output == SplatOutput::Layers),
+            ("DEPTH_FRONT", output == SplatOutput::FrontDepth),
+            ("DEPTH_BACK", output == SplatOutput::BackDepth),
         ]);
-        let (formats, compare): (&[_], _) = match key.output {
+        let (formats, compare): (&[_], _) = match output {
             SplatOutput::Layers => (&[LAYER_FORMAT], None),
             SplatOutput::FrontDepth => (&[], Some(CompareFunction::Greater)),
             SplatOutput::BackDepth => (&[], Some(CompareFunction::Less)),
         };
         RenderPipelineDescriptor {
             label: Some("fluid_splat_pipeline".into()),
-            layout: vec![common_layout(key.multisampled), self.fluid_layout.clone()],
+            layout: vec![common_layout(), self.fluid_layout.clone()],
             vertex: VertexState {
                 shader: self.shader.clone(),
                 shader_defs: shader_defs.clone(),

@@ -1,4 +1,4 @@
-//! Textures that stand in for what a body does not have, and the copy of the scene's colour.
+//! Textures of a view that its bodies share, and stand-ins for what a body does not have.
 
 use bevy::{
     prelude::*,
@@ -67,17 +67,18 @@ pub(crate) fn init_placeholders(
     });
 }
 
-/// A texture to copy a view's colour to.
-pub(crate) fn scene_copy(
+/// A texture as large as a view's target, to be drawn or copied to.
+pub(crate) fn view_texture(
     textures: &mut TextureCache,
     device: &RenderDevice,
+    label: &'static str,
     size: UVec2,
     format: TextureFormat,
 ) -> CachedTexture {
     textures.get(
         device,
         TextureDescriptor {
-            label: Some("fluid_scene_color"),
+            label: Some(label),
             size: Extent3d {
                 width: size.x,
                 height: size.y,
@@ -87,7 +88,10 @@ pub(crate) fn scene_copy(
             sample_count: 1,
             dimension: TextureDimension::D2,
             format,
-            usage: TextureUsages::COPY_DST | TextureUsages::TEXTURE_BINDING,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC
+                | TextureUsages::COPY_DST,
             view_formats: &[],
         },
     )

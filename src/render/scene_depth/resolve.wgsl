@@ -1,0 +1,22 @@
+// The depth prepass as (nearest, farthest) of each pixel's samples. Depths are never averaged
+// across samples: what is behind the nearest is hidden in part, what is behind the farthest in
+// every one of them.
+
+#ifdef MULTISAMPLED
+@group(0) @binding(0) var depth: texture_depth_multisampled_2d;
+#else
+@group(0) @binding(0) var depth: texture_depth_2d;
+#endif
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
+    let pixel = vec2<i32>(position.xy);
+    var range = vec2(textureLoad(depth, pixel, 0));
+#ifdef MULTISAMPLED
+    for (var i = 1; i < i32(textureNumSamples(depth)); i += 1) {
+        let sample = textureLoad(depth, pixel, i);
+        range = vec2(max(range.x, sample), min(range.y, sample));
+    }
+#endif
+    return range;
+}

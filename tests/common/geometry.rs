@@ -1,0 +1,159 @@
+//! Rays, depths and ellipsoids in f64, in view space: what the GPU's f32 is held against.
+
+use bevy::math::{Affine3A, DAffine3, DMat3, DVec2, DVec3, UVec2, Vec2, Vec3};
+use bevy::prelude::Transform;
+
+use super::{Lens, View};
+
+/// A ray from the near plane on, in view space.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    pub origin: DVec3,
+    /// Unit length.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.direction
+    }
+}
+
+impl View {
+    /// The middle of a pixel.
+    pub fn center(pixel: UVec2) -> DVec2 {
+        pixel.as_dvec2() + 0.5
+    }
+
+    /// From a point on screen in pixels.
+    pub fn ndc(&self, point: DVec2) -> DVec2 {
+        (2.0 * point / self.size.as_dvec2() - 1.0) * DVec2::new(1.0, -1.0)
+    }
+
+    fn half_extent(&self) -> DVec2 {
+        let aspect = f64::from(self.size.x) / f64::from(self.size.y);
+        let half_height = match self.lens {
+            Lens::Perspective { fov, .. } => (0.5 * f64::from(fov)).tan(),
+            Lens::Orthographic { height, .. } => 0.5 * f64::from(height),
+        };
+        DVec2::new(aspect * half_height, half_height)
+    }
+
+    /// The ray through a point on screen in pixels.
+    pub fn ray(&self, point: DVec2) -> Ray {
+        let across = self.ndc(point) * self.half_extent();
+        match self.lens {
+            Lens::Perspective { near, .. } => {
+                let along = across.extend(-1.0);
+                Ray {
+                    origin: along * f64::from(near),
+                    direction: along.normalize(),
+                }
+            }
+            Lens::Orthographic { near, .. } => Ray {
+                origin: across.extend(-f64::from(near)),
+                direction: DVec3::NEG_Z,
+            },
+        }
+    }
+
+    /// View depth, positive forward, of a device depth.
+    pub fn depth(&self, device: f32) -> f64 {
+        let device = f64::from(device);
+        match self.lens {
+            Lens::Perspective { near, .. } => f64::from(near) / device,
+            Lens::Orthographic { near, far, .. } => f64::from(far) - device * f64::from(far - near),
+        }
+    }
+
+    /// The point in view space at a point on screen in pixels and a device depth.
+    pub fn unproject(&self, point: DVec2, device: f32) -> DVec3 {
+        let z = self.depth(device);
+        let across = self.ndc(point) * self.half_extent();
+        match self.lens {
+            Lens::Perspective { .. } => (across * z).extend(-z),
+            Lens::Orthographic { .. } => across.extend(-z),
+        }
+    }
+
+    /// Pixels that a metre across the view spans at a view depth.
+    pub fn pixels_per_metre(&self, depth: f64) -> f64 {
+        let width = match self.lens {
+            Lens::Perspective { .. } => depth,
+            Lens::Orthographic { .. } => 1.0,
+        };
+        0.5 * f64::from(self.size.y) / (self.half_extent().y * width)
+    }
+
+    fn view_from_world(&self) -> DAffine3 {
+        affine(&self.pose).inverse()
+    }
+}
+
+fn affine(transform: &Transform) -> DAffine3 {
+    DAffine3::from_scale_rotation_translation(
+        transform.scale.as_dvec3(),
+        transform.rotation.as_dquat(),
+        transform.translation.as_dvec3(),
+    )
+}
+
+/// The unit sphere under an affine map to view space.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipsoid {
+    view_from_unit: DAffine3,
+    unit_from_view: DAffine3,
+}
+
+impl Ellipsoid {
+    /// A particle of a fluid that stands at `transform`.
+    pub fn new(view: &View, transform: &Transform, position: Vec3, radius: f32) -> Self {
+        let sphere = DAffine3::from_scale_rotation_translation(
+            DVec3::splat(radius.into()),
+            Default::default(),
+            position.as_dvec3(),
+        );
+        let view_from_unit = view.view_from_world() * affine(transform) * sphere;
+        Self {
+            view_from_unit,
+            unit_from_view: view_from_unit.inverse(),
+        }
+    }
+
+    /// Particles of one radius in world space.
+    pub fn spheres(view: &View, positions: &[Vec3], radius: f32) -> Vec<Self> {
+        let place = Transform::IDENTITY;
+        let sphere = |&position| Self::new(view, &place, position, radius);
+        positions.iter().map(sphere).collect()
+    }
+
+    /// Distances along the ray at which it enters and leaves; negative before its origin.
+    pub fn crossings(&self, ray: &Ray) -> Option<[f64; 2]> {
+        let o = self.unit_from_view.transform_point3(ray.origin);
+        let d = self.unit_from_view.transform_vector3(ray.direction);
+        let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - 1.0);
+        let disc = b * b - a * c;
+        (disc >= 0.0).then(|| [-1.0, 1.0].map(|sign| (-b + sign * disc.sqrt()) / a))
+    }
+
+    /// Outward unit normal at a point of the surface.
+    pub fn normal(&self, at: DVec3) -> DVec3 {
+        let unit = self.unit_from_view.transform_point3(at);
+        let inverse: DMat3 = self.unit_from_view.matrix3;
+        (inverse.transpose() * unit).normalize()
+    }
+}
+
+/// The unit vector of an octahedral code.
+pub fn decode_normal([x, y]: [f32; 2]) -> DVec3 {
+    let (x, y) = (f64::from(x), f64::from(y));
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = (-z).max(0.0);
+    let unfold = |v: f64| if v >= 0.0 { v - fold } else { v + fold };
+    DVec3::new(unfold(x), unfold(y), z).normalize()
+}
+
+/// Degrees between two vectors, exact for small angles too.
+pub fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b)).to_degrees()
+}

@@ -1,0 +1,247 @@
+//! Headless scenes for the GPU tests, and what their layers hold.
+
+#![allow(dead_code, unused_imports, reason = "each test file uses a part")]
+
+pub mod exit;
+pub mod geometry;
+
+#[path = "../../src/shape/oracle.rs"]
+pub mod oracle;
+
+use bevy::{
+    camera::{ScalingMode, Viewport},
+    core_pipeline::tonemapping::Tonemapping,
+    prelude::*,
+    render::{RenderApp, render_resource::Texture},
+};
+use bevy_fluid::{
+    Fresnel, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel,
+    prelude::*,
+    render::{Body, Layers, ViewBodies},
+};
+use fluid_stage::{TextureData, headless_app, read_texture, settle};
+
+pub use exit::{Exit, status};
+pub use geometry::{Ellipsoid, Ray, angle, decode_normal};
+pub(crate) use oracle::{Random, lattice};
+
+/// Every particle is a sphere of its radius, in the bulk.
+pub const BULK: SurfaceKernel = SurfaceKernel {
+    neighbor_radius: 4.0,
+    spray_threshold: 0,
+    anisotropic: false,
+    center_shift: 0.0,
+    max_ratio: 1.0,
+    radius_scale: 1.0,
+    sphere_neighbors: 0,
+    full_neighbors: 0,
+    skip_interior: false,
+};
+
+/// Every particle is a sphere of its radius, in the spray.
+pub const SPRAY: SurfaceKernel = SurfaceKernel {
+    spray_threshold: u32::MAX,
+    ..BULK
+};
+
+/// Layers as they are splatted, and the least work beyond them.
+pub const RAW: ScreenSpaceFluid = ScreenSpaceFluid {
+    smoothing: Smoothing::None,
+    refractions: Refractions::Zero,
+    search: Search::BRACKETED,
+    fresnel: Fresnel::Exact,
+    contact: 0.0,
+};
+
+/// A camera's view.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    pub size: UVec2,
+    pub lens: Lens,
+    pub pose: Transform,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Lens {
+    Perspective { fov: f32, near: f32 },
+    Orthographic { height: f32, near: f32, far: f32 },
+}
+
+impl View {
+    /// From the origin along −z.
+    pub const fn new(side: u32, lens: Lens) -> Self {
+        Self {
+            size: UVec2::splat(side),
+            lens,
+            pose: Transform::IDENTITY,
+        }
+    }
+
+    pub fn projection(&self) -> Projection {
+        match self.lens {
+            Lens::Perspective { fov, near } => Projection::Perspective(PerspectiveProjection {
+                fov,
+                near,
+                near_clip_plane: vec4(0.0, 0.0, -1.0, -near),
+                ..default()
+            }),
+            Lens::Orthographic { height, near, far } => {
+                Projection::Orthographic(OrthographicProjection {
+                    near,
+                    far,
+                    scaling_mode: ScalingMode::FixedVertical {
+                        viewport_height: height,
+                    },
+                    ..OrthographicProjection::default_3d()
+                })
+            }
+        }
+    }
+
+    /// A camera that draws fluids, over black.
+    pub fn camera(&self, settings: ScreenSpaceFluid) -> impl Bundle {
+        (self.plain_camera(), settings)
+    }
+
+    /// The same camera without fluids.
+    pub fn plain_camera(&self) -> impl Bundle {
+        (
+            Camera3d::default(),
+            Camera {
+                clear_color: ClearColorConfig::Custom(Color::BLACK),
+                ..default()
+            },
+            bevy::camera::Hdr,
+            Msaa::Off,
+            Tonemapping::None,
+            self.projection(),
+            self.pose,
+        )
+    }
+}
+
+/// An app that shows `scene` in this view, its pipelines compiled.
+pub fn show(view: &View, settings: ScreenSpaceFluid, scene: impl FnOnce(&mut World)) -> App {
+    show_with(FluidPlugin::default(), view, settings, scene)
+}
+
+/// The same with a plugin that is not the default.
+pub fn show_with(
+    plugin: FluidPlugin,
+    view: &View,
+    settings: ScreenSpaceFluid,
+    scene: impl FnOnce(&mut World),
+) -> App {
+    let mut app = headless_app(view.size, |app| {
+        app.add_plugins(plugin);
+        app.world_mut().spawn(view.camera(settings));
+        scene(app.world_mut());
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    app
+}
+
+/// The only entity with a component.
+pub fn only<C: Component>(app: &mut App) -> Entity {
+    let world = app.world_mut();
+    world
+        .query_filtered::<Entity, With<C>>()
+        .single(world)
+        .unwrap()
+}
+
+/// Gives the only camera other components, and settles.
+pub fn look(app: &mut App, bundle: impl Bundle) {
+    let camera = only::<Camera3d>(app);
+    app.world_mut().entity_mut(camera).insert(bundle);
+    settle(app).unwrap();
+}
+
+/// Puts one fluid in place of all others, and settles.
+pub fn pour(app: &mut App, fluid: impl Bundle) {
+    let world = app.world_mut();
+    let old: Vec<_> = world
+        .query_filtered::<Entity, With<FluidParticles>>()
+        .iter(world)
+        .collect();
+    for fluid in old {
+        world.despawn(fluid);
+    }
+    world.spawn(fluid);
+    settle(app).unwrap();
+}
+
+/// A fluid of water that absorbs nothing.
+pub fn fluid(positions: &[Vec3], radius: f32, kernel: SurfaceKernel) -> impl Bundle + use<> {
+    (
+        FluidParticles::new(positions.to_vec(), radius),
+        kernel,
+        FluidMaterial::CLEAR_WATER,
+    )
+}
+
+/// An opaque box.
+pub fn spawn_box(world: &mut World, size: Vec3, transform: Transform) -> Entity {
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::from_size(size));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.2, 0.5, 0.3),
+            unlit: true,
+            ..default()
+        });
+    world
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), transform))
+        .id()
+}
+
+/// What the first view that sees liquid holds of it.
+pub fn view_bodies(app: &App) -> Option<&ViewBodies> {
+    app.sub_app(RenderApp)
+        .world()
+        .iter_entities()
+        .find_map(|entity| entity.get::<ViewBodies>())
+}
+
+/// The only body in view.
+pub fn body(app: &App) -> &Body {
+    let [body] = &view_bodies(app).expect("liquid is in view").bodies[..] else {
+        panic!("one body is in view");
+    };
+    body
+}
+
+/// One of the only body's textures: `read(&app, Layers::bulk)`.
+pub fn read(app: &App, pick: fn(&Layers) -> &Texture) -> TextureData {
+    read_texture(app, pick(&body(app).layers)).unwrap()
+}
+
+/// All pixels of a texture.
+pub fn pixels(size: UVec2) -> impl Iterator<Item = UVec2> {
+    (0..size.y).flat_map(move |y| (0..size.x).map(move |x| uvec2(x, y)))
+}
+
+/// A thin disc, `half_width` in radius, whose normal is +z before `rotation`: flat to within its
+/// thickness. It is one particle of the
+/// bulk, in a fluid scaled to almost nothing along z.
+pub fn plate(half_width: f32, center: Vec3, rotation: Quat) -> impl Bundle + use<> {
+    (
+        fluid(&[Vec3::ZERO], 1.0, BULK),
+        plate_transform(half_width, center, rotation),
+    )
+}
+
+/// The transform that makes the unit sphere a [`plate`].
+pub fn plate_transform(half_width: f32, center: Vec3, rotation: Quat) -> Transform {
+    Transform {
+        translation: center,
+        rotation,
+        scale: vec3(half_width, half_width, PLATE_THICKNESS),
+    }
+}
+
+/// Half of the thickness of a [`plate`].
+pub const PLATE_THICKNESS: f32 = 1e-4;

@@ -1,0 +1,410 @@
+//! Splats → depth layers, held against ellipsoids in f64.
+
+mod common;
+
+use bevy::prelude::*;
+use bevy_fluid::{FluidPlugin, LayerBlending, SurfaceKernel, prelude::*, render::Layers};
+use common::*;
+use fluid_stage::TextureData;
+
+const PERSPECTIVE: Lens = Lens::Perspective {
+    fov: 0.7,
+    near: 0.1,
+};
+const PARALLEL: Lens = Lens::Orthographic {
+    height: 4.0,
+    near: 0.0,
+    far: 12.0,
+};
+const LENSES: [Lens; 2] = [PERSPECTIVE, PARALLEL];
+
+/// Nothing there, as `types.wgsl` has it.
+const NOTHING: [f32; 2] = [0.0, -2.0];
+/// The front of a ray that starts in the liquid.
+const INSIDE: f32 = 1.0;
+
+/// Front and back of the union along one ray, as distances from the near plane.
+fn union(bodies: &[Ellipsoid], ray: &Ray) -> Option<[f64; 2]> {
+    let crossings = bodies.iter().filter_map(|body| body.crossings(ray));
+    crossings
+        .filter(|[_, back]| *back > 0.0)
+        .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
+/// Compares all pixels. Depths may be off by `tolerance` (m), and by what a shift of the ray by a
+/// fiftieth of a pixel makes: depth has no bounded slope at silhouettes, and there f32 and f64
+/// may round a ray to different sides.
+fn assert_layers(view: &View, got: &TextureData, bodies: &[Ellipsoid], tolerance: f64) {
+    let play =
+        [(0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)].map(|(x, y)| 0.02 * ivec2(x, y).as_dvec2());
+    let mut covered = 0;
+    for pixel in pixels(view.size) {
+        let [front, back] = got.f32x2(pixel.x, pixel.y);
+        let rays = play.map(|shift| view.ray(View::center(pixel) + shift));
+        let hits: Vec<_> = rays
+            .iter()
+            .filter_map(|ray| Some((ray, union(bodies, ray)?)))
+            .collect();
+        if front == NOTHING[0] {
+            assert_eq!([front, back], NOTHING, "{pixel}");
+            assert!(hits.len() < rays.len(), "{pixel} is covered");
+            continue;
+        }
+        assert!(!hits.is_empty(), "{pixel} is not covered: {front} {back}");
+        covered += 1;
+        let near_enough = |got: f64, side: usize| {
+            let depths = hits.iter().map(|(ray, t)| -ray.at(t[side]).z);
+            let (low, high) = depths.fold((f64::MAX, f64::MIN), |(low, high), z| {
+                (low.min(z), high.max(z))
+            });
+            assert!(
+                (low - tolerance..=high + tolerance).contains(&got),
+                "{pixel}, side {side}: {got} is not within {tolerance} of {low}..={high}"
+            );
+        };
+        near_enough(view.depth(-back), 1);
+        if front == INSIDE {
+            assert!(
+                hits.iter().any(|(_, t)| t[0] <= tolerance),
+                "{pixel} starts outside"
+            );
+        } else {
+            near_enough(view.depth(front), 0);
+        }
+    }
+    assert!(covered > 30, "too little is seen to tell: {covered} pixels");
+}
+
+fn bulk_and_spray() -> [(
+    SurfaceKernel,
+    fn(&Layers) -> &bevy::render::render_resource::Texture,
+); 2] {
+    [(BULK, Layers::bulk), (SPRAY, Layers::spray)]
+}
+
+fn scattered(count: usize, center: Vec3, spread: f32) -> Vec<Vec3> {
+    let mut random = Random(7);
+    (0..count)
+        .map(|_| center + spread * (2.0 * random.point() - 1.0))
+        .collect()
+}
+
+#[test]
+fn one_sphere_is_met_where_geometry_says() {
+    let mut view = View::new(96, PERSPECTIVE);
+    let mut app = show(&view, RAW, |_| {});
+    for lens in LENSES {
+        view.lens = lens;
+        look(&mut app, view.projection());
+        // In the middle, and cut by the corner of the view.
+        for center in [vec3(0.0, 0.0, -6.0), vec3(1.6, -1.7, -5.0)] {
+            for (kernel, layers) in bulk_and_spray() {
+                pour(&mut app, fluid(&[center], 1.0, kernel));
+                let bodies = Ellipsoid::spheres(&view, &[center], 1.0);
+                assert_layers(&view, &read(&app, layers), &bodies, 1e-3);
+            }
+        }
+    }
+}
+
+#[test]
+fn overlapping_spheres_keep_the_nearest_front_and_the_farthest_back() {
+    let positions = scattered(300, vec3(0.2, 0.1, -6.0), 1.5);
+    let radius = 0.3;
+    let mut view = View::new(96, PERSPECTIVE);
+    // Looked at from aside, so that no axis is special.
+    view.pose = Transform::from_xyz(2.0, 3.0, -2.0).looking_at(positions[0], Vec3::Y);
+    let mut app = show(&view, RAW, |_| {});
+    for lens in LENSES {
+        view.lens = lens;
+        look(&mut app, view.projection());
+        for (kernel, layers) in bulk_and_spray() {
+            pour(&mut app, fluid(&positions, radius, kernel));
+            let bodies = Ellipsoid::spheres(&view, &positions, radius);
+            assert_layers(
+                &view,
+                &read(&app, layers),
+                &bodies,
+                1e-3 * f64::from(radius),
+            );
+        }
+    }
+}
+
+#[test]
+fn a_scaled_and_turned_fluid_has_ellipsoids() {
+    let mut view = View::new(96, PERSPECTIVE);
+    let positions = scattered(8, Vec3::ZERO, 1.0);
+    let place = Transform {
+        translation: vec3(0.0, 0.2, -6.0),
+        rotation: Quat::from_euler(EulerRot::XYZ, 0.4, 0.9, -0.3),
+        scale: vec3(2.0, 0.3, 0.9),
+    };
+    let mut app = show(&view, RAW, |world| {
+        world.spawn((fluid(&positions, 0.5, BULK), place));
+    });
+    for lens in LENSES {
+        view.lens = lens;
+        look(&mut app, view.projection());
+        let bodies: Vec<_> = positions
+            .iter()
+            .map(|&p| Ellipsoid::new(&view, &place, p, 0.5))
+            .collect();
+        assert_layers(&view, &read(&app, Layers::bulk), &bodies, 0.5e-3);
+    }
+}
+
+#[test]
+fn a_thousand_radii_away_spheres_keep_their_shape() {
+    let center = vec3(0.0, 0.0, -1e3);
+    // Some fifty pixels across, in both projections.
+    let lenses = [
+        Lens::Perspective {
+            fov: 4e-3,
+            near: 0.1,
+        },
+        Lens::Orthographic {
+            height: 4.0,
+            near: 0.0,
+            far: 2e3,
+        },
+    ];
+    let mut view = View::new(96, lenses[0]);
+    view.pose = Transform::from_xyz(100.0, 70.0, 30.0);
+    let center = view.pose.translation + center + vec3(0.3, -0.2, 0.0);
+    let mut app = show(&view, RAW, |world| {
+        world.spawn(fluid(&[center], 1.0, SPRAY));
+    });
+    for lens in lenses {
+        view.lens = lens;
+        look(&mut app, view.projection());
+        let bodies = Ellipsoid::spheres(&view, &[center], 1.0);
+        assert_layers(&view, &read(&app, Layers::spray), &bodies, 1e-3);
+    }
+}
+
+#[test]
+fn a_sphere_cut_by_the_near_plane_shows_its_inside() {
+    for lens in [
+        Lens::Perspective {
+            fov: 1.2,
+            near: 0.8,
+        },
+        Lens::Orthographic {
+            height: 2.0,
+            near: 0.8,
+            far: 12.0,
+        },
+    ] {
+        let view = View::new(96, lens);
+        // From behind the near plane to before it.
+        let center = vec3(0.3, 0.2, -0.9);
+        let app = show(&view, RAW, |world| {
+            world.spawn(fluid(&[center], 0.5, SPRAY));
+        });
+        let layers = read(&app, Layers::spray);
+        let inside = layers
+            .texels()
+            .filter(|&[front, _]: &[f32; 2]| front == INSIDE);
+        assert!(inside.count() > 100);
+        let bodies = Ellipsoid::spheres(&view, &[center], 0.5);
+        assert_layers(&view, &layers, &bodies, 0.5e-3);
+    }
+}
+
+#[test]
+fn from_inside_every_pixel_has_the_far_surface() {
+    let view = View::new(64, PERSPECTIVE);
+    let center = vec3(0.2, -0.1, 0.3);
+    for (kernel, layers) in bulk_and_spray() {
+        let app = show(&view, RAW, |world| {
+            world.spawn(fluid(&[center], 2.0, kernel));
+        });
+        let layers = read(&app, layers);
+        assert!(layers.texels().all(|[front, _]: [f32; 2]| front == INSIDE));
+        assert_layers(
+            &view,
+            &layers,
+            &Ellipsoid::spheres(&view, &[center], 2.0),
+            2e-3,
+        );
+    }
+}
+
+#[test]
+fn nothing_behind_the_camera_is_drawn() {
+    let view = View::new(64, PERSPECTIVE);
+    // The second is ahead, so that the body is not left out altogether.
+    let [behind, ahead] = [vec3(0.0, 0.0, 2.0), vec3(0.0, 0.0, -5.0)];
+    let app = show(&view, RAW, |world| {
+        world.spawn(fluid(&[behind, ahead], 0.5, SPRAY));
+    });
+    let bodies = Ellipsoid::spheres(&view, &[ahead], 0.5);
+    assert_layers(&view, &read(&app, Layers::spray), &bodies, 0.5e-3);
+    let app = show(&view, RAW, |world| {
+        world.spawn(fluid(&[behind], 0.5, SPRAY));
+    });
+    assert!(view_bodies(&app).is_none());
+}
+
+#[test]
+fn the_sprays_normals_are_its_spheres() {
+    for lens in LENSES {
+        let view = View::new(96, lens);
+        let center = vec3(0.5, -0.4, -5.0);
+        let app = show(&view, RAW, |world| {
+            world.spawn(fluid(&[center], 1.0, SPRAY));
+        });
+        let normals = read(&app, Layers::spray_normals);
+        let [sphere] = Ellipsoid::spheres(&view, &[center], 1.0)[..] else {
+            unreachable!("one particle");
+        };
+        let mut seen = 0;
+        for pixel in pixels(view.size) {
+            let ray = view.ray(View::center(pixel));
+            let Some(crossings) = sphere.crossings(&ray) else {
+                continue;
+            };
+            let normal = crossings.map(|t| sphere.normal(ray.at(t)));
+            // Within some pixels of the silhouette the normal turns by degrees a pixel.
+            if normal[0].dot(ray.direction) > -0.1 {
+                continue;
+            }
+            seen += 1;
+            let [fx, fy, bx, by] = normals.f16x4(pixel.x, pixel.y);
+            // Two halves have 11 bits each: 0.05°. The rest is for rounding near the silhouette.
+            let front = angle(decode_normal([fx, fy]), normal[0]);
+            let back = angle(-decode_normal([bx, by]), normal[1]);
+            assert!(front < 0.2 && back < 0.2, "{pixel}: {front}° {back}°");
+        }
+        assert!(seen > 500, "{seen}");
+    }
+}
+
+/// Distance between two floats of one sign in representable steps.
+fn steps_apart(a: f32, b: f32) -> u32 {
+    a.to_bits().abs_diff(b.to_bits())
+}
+
+#[test]
+fn both_ways_of_blending_give_the_same_layers() {
+    let view = View::new(96, PERSPECTIVE);
+    let pool = scattered(200, vec3(0.0, 0.0, -6.0), 1.2);
+    let [blended, drawn] = [LayerBlending::MaxBlend, LayerBlending::DepthDraws].map(|blending| {
+        let plugin = FluidPlugin {
+            layer_blending: blending,
+        };
+        let app = show_with(plugin, &view, RAW, |world| {
+            world.spawn(fluid(&pool, 0.3, BULK));
+            world.spawn(fluid(
+                &[vec3(1.0, 1.0, -4.0), vec3(0.0, 0.0, -4.5)],
+                0.2,
+                SPRAY,
+            ));
+        });
+        [read(&app, Layers::bulk), read(&app, Layers::spray)]
+    });
+    for (blended, drawn) in blended.iter().zip(&drawn) {
+        for pixel in pixels(view.size) {
+            let [a, b] = [blended, drawn].map(|layers| layers.f32x2(pixel.x, pixel.y));
+            // Two pipelines may round the same formula differently.
+            let same = steps_apart(a[0], b[0]) <= 2 && steps_apart(a[1], b[1]) <= 2;
+            assert!(same, "{pixel}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn bulk_and_spray_go_to_their_own_layers() {
+    let view = View::new(96, PERSPECTIVE);
+    let radius = 0.1;
+    let cluster: Vec<_> = lattice(6, 2.0 * radius, 0.2)
+        .iter()
+        .map(|p| p + vec3(-1.0, -0.5, -5.0))
+        .collect();
+    let droplet = vec3(0.9, 0.6, -4.5);
+    let kernel = SurfaceKernel {
+        anisotropic: false,
+        ..default()
+    };
+    let all = [&cluster[..], &[droplet]].concat();
+    let app = show(&view, RAW, |world| {
+        world.spawn(fluid(&all, radius, kernel));
+    });
+    let [bulk, spray] = [&cluster[..], &[droplet]].map(|p| Ellipsoid::spheres(&view, p, radius));
+    assert_layers(&view, &read(&app, Layers::bulk), &bulk, 1e-4);
+    assert_layers(&view, &read(&app, Layers::spray), &spray, 1e-4);
+}
+
+#[test]
+fn a_wall_hides_fronts_but_keeps_backs() {
+    let view = View::new(64, PERSPECTIVE);
+    let center = vec3(0.0, 0.0, -6.0);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut app = show(&view, RAW, |world| {
+            world.spawn(fluid(&[center], 1.0, SPRAY));
+            // Before the left half.
+            spawn_box(
+                world,
+                vec3(4.0, 8.0, 0.2),
+                Transform::from_xyz(-2.0, 0.0, -3.0),
+            );
+        });
+        look(&mut app, msaa);
+        let layers = read(&app, Layers::spray);
+        let row = |x: u32| layers.f32x2(x, 32);
+        let [hidden, open] = [row(28), row(36)];
+        assert_eq!(hidden[0], NOTHING[0]);
+        assert!(open[0] > 0.0);
+        // The wall's edge passes through the middle: left and right mirror each other.
+        let mirrored = row(63 - 28)[1];
+        assert!(
+            (hidden[1] - mirrored).abs() < 1e-6 * mirrored.abs(),
+            "{hidden:?} {mirrored}"
+        );
+    }
+}
+
+#[test]
+fn multisampling_changes_no_layer() {
+    let view = View::new(64, PERSPECTIVE);
+    let mut app = show(&view, RAW, |world| {
+        world.spawn(fluid(&scattered(60, vec3(0.0, 0.0, -6.0), 1.2), 0.3, BULK));
+        world.spawn(fluid(&[vec3(0.5, 0.5, -4.0)], 0.2, SPRAY));
+    });
+    let layers = |app: &App| [read(app, Layers::bulk), read(app, Layers::spray)];
+    let single = layers(&app);
+    look(&mut app, Msaa::Sample4);
+    assert_eq!(single, layers(&app));
+}
+
+#[test]
+fn interior_particles_are_not_missed_from_any_side() {
+    let radius = 0.05;
+    let block = lattice(16, 2.0 * radius, 0.3);
+    let middle = Vec3::splat(7.5 * 2.0 * radius);
+    let kernel = |skip_interior| SurfaceKernel {
+        skip_interior,
+        ..default()
+    };
+    let mut view = View::new(128, PERSPECTIVE);
+    let mut app = show(&view, RAW, |_| {});
+    for from in [
+        Vec3::Z,
+        Vec3::NEG_X,
+        vec3(1.0, 2.0, 3.0),
+        vec3(-3.0, -1.0, 0.5),
+    ] {
+        view.pose = Transform::from_translation(middle + 3.5 * from.normalize())
+            .looking_at(middle, vec3(0.1, 1.0, 0.2));
+        look(&mut app, view.pose);
+        let [with, without] = [false, true].map(|skip| {
+            pour(&mut app, fluid(&block, radius, kernel(skip)));
+            let shaped = only::<FluidParticles>(&mut app);
+            let shaped = app.world().get::<bevy_fluid::ShapedFluid>(shaped).unwrap();
+            assert_eq!(shaped.interior() > 500, skip, "{}", shaped.interior());
+            read(&app, Layers::bulk)
+        });
+        assert!(with == without, "seen from {from}");
+    }
+}
