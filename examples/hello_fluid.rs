@@ -1,6 +1,6 @@
 //! The smallest program: a ball of water over a checkered floor.
 //!
-//! In a window, or `--out FILE.png` for a picture. Try other materials and radii.
+//! In a window, or `--out FILE.png` for a picture. Try `FluidMaterial::HONEY`.
 
 use bevy::prelude::*;
 use bevy_fluid::prelude::*;
@@ -15,20 +15,23 @@ fn main() -> AppExit {
 }
 
 fn setup(mut scenery: Scenery) {
-    let steps = -12..=12;
-    let positions = steps
-        .clone()
-        .flat_map(|x| steps.clone().map(move |y| (x, y)))
-        .flat_map(|(x, y)| steps.clone().map(move |z| ivec3(x, y, z).as_vec3() * 0.1))
-        .filter(|p| p.length() < 1.0)
-        .map(|p| p + Vec3::Y * 1.1)
-        .collect();
+    // Shells of evenly spread particles, the spacing of neighbours twice their radius.
+    let positions = (1..=10).flat_map(|shell| {
+        let (size, count) = (0.1 * shell as f32, 4 * 3 * shell * shell);
+        (0..count).map(move |i| {
+            let height = 1.0 - (2 * i + 1) as f32 / count as f32;
+            let around = Vec2::from_angle(2.399963 * i as f32) * (1.0 - height * height).sqrt();
+            vec3(around.x, height, around.y) * size + Vec3::Y * 1.2
+        })
+    });
     scenery.checker_floor(Vec3::ZERO, 6.0, 12);
     scenery.sun(vec3(0.5, 1.0, 0.5), 10.0, true);
     let sky = scenery.sky(vec3(0.5, 1.0, 0.5));
-    let mut commands = scenery.commands;
-    commands.spawn((FluidParticles::new(positions, 0.05), FluidMaterial::WATER));
-    commands.spawn((
+    scenery.commands.spawn((
+        FluidParticles::new(positions.collect(), 0.05),
+        FluidMaterial::WATER,
+    ));
+    scenery.commands.spawn((
         Camera3d::default(),
         ScreenSpaceFluid::default(),
         sky.bundle(),

@@ -1,4 +1,38 @@
 //! Particle liquids for Bevy, with up to four refractions in screen space.
+//!
+//! A fluid is an entity with [`FluidParticles`] and a [`FluidMaterial`]; a camera with
+//! [`ScreenSpaceFluid`] draws it. Everything else has defaults.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_fluid::prelude::*;
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, FluidPlugin::default()))
+//!     .add_systems(Startup, |mut commands: Commands| {
+//!         let drops = (0..100).map(|i| Vec3::X * 0.1 * i as f32).collect();
+//!         commands.spawn((FluidParticles::new(drops, 0.05), FluidMaterial::WATER));
+//!         commands.spawn((
+//!             Camera3d::default(),
+//!             ScreenSpaceFluid::default(),
+//!             Transform::from_xyz(5.0, 2.0, 10.0).looking_at(Vec3::X * 5.0, Vec3::Y),
+//!         ));
+//!     })
+//!     .run();
+//! ```
+//!
+//! # From particles to picture
+//!
+//! 1. [`shape`], on the CPU, in [`FluidSystems::Shape`]: a grid finds each particle's neighbours;
+//!    few make it *spray*, many *bulk*, a full and balanced set *interior*, which is not drawn. The
+//!    neighbours' covariance stretches the splat of a bulk particle along the surface.
+//! 2. [`render`], on the GPU, ahead of Bevy's main pass: splats become four depth layers, front and
+//!    back of bulk and of spray; the bulk's are smoothed; normals follow from the fit, from depth,
+//!    or from the spray's ellipsoids; every pixel's ray is traced through up to four interfaces.
+//! 3. Between opaque and transparent things, the result is put over the scene: what the liquid
+//!    itself sends, and the background where the ray has gone.
+//!
+//! Only what a scene has is done: see [`render::plan`].
 
 pub mod material;
 pub mod medium;
@@ -49,3 +83,8 @@ impl Plugin for FluidPlugin {
         ));
     }
 }
+
+/// The README's code is compiled with the doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

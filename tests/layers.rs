@@ -23,56 +23,56 @@ const NOTHING: [f32; 2] = [0.0, -2.0];
 /// The front of a ray that starts in the liquid.
 const INSIDE: f32 = 1.0;
 
+/// How much larger or smaller than it is an ellipsoid may look: enough for f32 to round a ray to
+/// the other side of a silhouette, where depth jumps.
+const PLAY: f64 = 2e-4;
+
 /// Front and back of the union along one ray, as distances from the near plane.
-fn union(bodies: &[Ellipsoid], ray: &Ray) -> Option<[f64; 2]> {
-    let crossings = bodies.iter().filter_map(|body| body.crossings(ray));
+fn union(bodies: &[Ellipsoid], ray: &Ray, scale: f64) -> Option<[f64; 2]> {
+    let crossings = bodies
+        .iter()
+        .filter_map(|body| body.scaled_crossings(ray, scale));
     crossings
         .filter(|[_, back]| *back > 0.0)
         .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
-/// Compares all pixels. Depths may be off by `tolerance` (m), and by what a shift of the ray by a
-/// fiftieth of a pixel makes: depth has no bounded slope at silhouettes, and there f32 and f64
-/// may round a ray to different sides.
+/// Compares all pixels: depths may be off by `tolerance` (m). The larger the bodies, the nearer
+/// their fronts and the farther their backs, so the layers lie between those of slightly larger
+/// and of slightly smaller ones.
 fn assert_layers(view: &View, got: &TextureData, bodies: &[Ellipsoid], tolerance: f64) {
-    let play =
-        [(0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)].map(|(x, y)| 0.02 * ivec2(x, y).as_dvec2());
     let mut covered = 0;
     for pixel in pixels(view.size) {
         let [front, back] = got.f32x2(pixel.x, pixel.y);
-        let rays = play.map(|shift| view.ray(View::center(pixel) + shift));
-        let hits: Vec<_> = rays
-            .iter()
-            .filter_map(|ray| Some((ray, union(bodies, ray)?)))
-            .collect();
+        let ray = view.ray(View::center(pixel));
+        let [larger, smaller] = [1.0 + PLAY, 1.0 - PLAY].map(|scale| union(bodies, &ray, scale));
         if front == NOTHING[0] {
             assert_eq!([front, back], NOTHING, "{pixel}");
-            assert!(hits.len() < rays.len(), "{pixel} is covered");
+            assert!(smaller.is_none(), "{pixel} is covered");
             continue;
         }
-        assert!(!hits.is_empty(), "{pixel} is not covered: {front} {back}");
+        let larger = larger.unwrap_or_else(|| panic!("{pixel} is not covered: {front} {back}"));
+        let smaller = smaller.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
         covered += 1;
-        let near_enough = |got: f64, side: usize| {
-            let depths = hits.iter().map(|(ray, t)| -ray.at(t[side]).z);
-            let (low, high) = depths.fold((f64::MAX, f64::MIN), |(low, high), z| {
-                (low.min(z), high.max(z))
-            });
-            assert!(
-                (low - tolerance..=high + tolerance).contains(&got),
-                "{pixel}, side {side}: {got} is not within {tolerance} of {low}..={high}"
-            );
-        };
-        near_enough(view.depth(-back), 1);
+        // From depths to distances along the ray.
+        let along = |depth: f64| (depth + ray.origin.z) / -ray.direction.z;
+        let [near, far] = [along(view.depth(front)), along(view.depth(-back))];
         if front == INSIDE {
-            assert!(
-                hits.iter().any(|(_, t)| t[0] <= tolerance),
-                "{pixel} starts outside"
-            );
+            assert!(larger[0] <= tolerance, "{pixel} starts outside");
         } else {
-            near_enough(view.depth(front), 0);
+            let range = larger[0] - tolerance..=smaller[0] + tolerance;
+            assert!(
+                range.contains(&near),
+                "{pixel}: front {near} is not in {range:?}"
+            );
         }
+        let range = smaller[1] - tolerance..=larger[1] + tolerance;
+        assert!(
+            range.contains(&far),
+            "{pixel}: back {far} is not in {range:?}"
+        );
     }
-    assert!(covered > 30, "too little is seen to tell: {covered} pixels");
+    assert!(covered > 20, "too little is seen to tell: {covered} pixels");
 }
 
 fn bulk_and_spray() -> [(
@@ -323,9 +323,10 @@ fn bulk_and_spray_go_to_their_own_layers() {
         .map(|p| p + vec3(-1.0, -0.5, -5.0))
         .collect();
     let droplet = vec3(0.9, 0.6, -4.5);
+    // The least of the cluster's corners has four neighbours.
     let kernel = SurfaceKernel {
-        anisotropic: false,
-        ..default()
+        spray_threshold: 2,
+        ..BULK
     };
     let all = [&cluster[..], &[droplet]].concat();
     let app = show(&view, RAW, |world| {
@@ -381,7 +382,9 @@ fn multisampling_changes_no_layer() {
 #[test]
 fn interior_particles_are_not_missed_from_any_side() {
     let radius = 0.05;
-    let block = lattice(16, 2.0 * radius, 0.3);
+    // As dense as a liquid is. From a fifth of the spacing on, single pores are so deep that a
+    // ray ends at an interior particle (2 of 4000 pixels; at 0.3 it is 25).
+    let block = lattice(16, 2.0 * radius, 0.15);
     let middle = Vec3::splat(7.5 * 2.0 * radius);
     let kernel = |skip_interior| SurfaceKernel {
         skip_interior,

@@ -27,7 +27,7 @@ const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 
 fn main() -> AppExit {
     let stage = StagePlugins {
-        frames: 40,
+        frames: 45,
         title: "dam break · bevy_fluid".into(),
         ..default()
     };
@@ -64,7 +64,11 @@ fn setup(mut scenery: Scenery, dam: Res<DamBreak>) {
 
     scenery.commands.spawn((
         FluidParticles::new(dam.positions(), RADIUS),
-        FluidMaterial::WATER,
+        FluidMaterial {
+            // A lake's water, so that depth shows in a tank.
+            medium: Medium::absorbing(LinearRgba::rgb(0.3, 0.72, 0.8), 1.0),
+            ..FluidMaterial::WATER
+        },
     ));
     let (eye, target) = frame_camera(inside, 0.7, 16.0 / 9.0);
     scenery.commands.spawn((

@@ -11,6 +11,8 @@ use salva3d::{
 /// Smoothing length over particle diameter.
 const SMOOTHING: f32 = 2.0;
 const GRAVITY: f32 = -9.81;
+/// Steps a frame: with one, the solver throws water about.
+const SUBSTEPS: u32 = 2;
 /// A slow machine slows the liquid down rather than the program.
 const LONGEST_STEP: f32 = 1.0 / 30.0;
 
@@ -18,6 +20,9 @@ const LONGEST_STEP: f32 = 1.0 / 30.0;
 pub(crate) struct DamBreak {
     world: LiquidWorld,
     fluid: FluidHandle,
+    /// Where centres of particles may be.
+    low: Vec3,
+    high: Vec3,
 }
 
 impl DamBreak {
@@ -41,12 +46,37 @@ impl DamBreak {
             .chain(cylinder(pillar, tank.y, radius))
             .collect();
         world.add_boundary(Boundary::new(vectors(solid), InteractionGroups::all()));
-        Self { world, fluid }
+        Self {
+            world,
+            fluid,
+            low: low + radius,
+            high: vec3(0.5 * tank.x, 2.0 * tank.y, 0.5 * tank.z) - radius,
+        }
     }
 
     pub(crate) fn step(&mut self, delta: f32) {
         let gravity = Vector::y() * GRAVITY;
-        self.world.step(delta.min(LONGEST_STEP), &gravity);
+        for _ in 0..SUBSTEPS {
+            self.world
+                .step(delta.min(LONGEST_STEP) / SUBSTEPS as f32, &gravity);
+            self.contain();
+        }
+    }
+
+    /// What has slipped between the particles of a wall is put back to it.
+    fn contain(&mut self) {
+        let Some(fluid) = self.world.fluids_mut().get_mut(self.fluid) else {
+            return;
+        };
+        for (position, velocity) in fluid.positions.iter_mut().zip(&mut fluid.velocities) {
+            for axis in 0..3 {
+                let inside = position[axis].clamp(self.low[axis], self.high[axis]);
+                if inside != position[axis] {
+                    position[axis] = inside;
+                    velocity[axis] = 0.0;
+                }
+            }
+        }
     }
 
     pub(crate) fn positions(&self) -> Vec<Vec3> {
@@ -81,8 +111,7 @@ fn lattice(low: Vec3, high: Vec3, spacing: f32) -> Vec<Vec3> {
     points
 }
 
-/// Floor and four walls (higher than the tank: nothing spills), just outside of it. Two layers:
-/// fast particles slip through one.
+/// Floor and four walls (higher than the tank: nothing spills), two layers just outside of it.
 fn walls(tank: Vec3, radius: f32) -> Vec<Vec3> {
     let mut points = Vec::new();
     for layer in [1.0, 3.0] {

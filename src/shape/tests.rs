@@ -94,6 +94,28 @@ fn h37_particles_on_cell_boundaries_count_once() {
 }
 
 #[test]
+fn rounding_hides_no_neighbor_two_cells_away() {
+    // 0.125 + 1e-10 is 0.125 in f32, and so within reach, but spans three cells of that side.
+    let mut positions = vec![Vec3::X * -1e-10, Vec3::X * 0.125];
+    // Enough for a grid in which those cells are not neighbours the other way around.
+    positions.extend([Vec3::NEG_X; 60]);
+    check(&positions, 0.125);
+    assert_eq!(oracle::neighbors(&positions, 0, 0.125), [1]);
+}
+
+#[test]
+fn folded_space_wraps_around() {
+    // So few cells that knots meet its ends, wherever they are.
+    for seed in 1..200 {
+        let mut random = Random(seed);
+        let knots = (0..6).map(|_| random.point() * 1e3).collect::<Vec<_>>();
+        let positions = knots.iter().flat_map(|&knot| [(); 5].map(|()| knot));
+        let positions: Vec<_> = positions.map(|p| p + random.point() * 3.0).collect();
+        check(&positions, 1.0);
+    }
+}
+
+#[test]
 fn h12_neighborhoods_far_from_the_origin() {
     let far = |p: &Vec3| *p * 16.0 + Vec3::new(1e6, -1e6, 3e6);
     check(&cloud(1.0).iter().map(far).collect::<Vec<_>>(), 1.6);

@@ -8,22 +8,22 @@ use super::{View, decode_normal};
 
 /// What is left of a pixel's ray, in view space.
 #[derive(Clone, Copy, Debug)]
-pub struct Exit {
-    pub position: DVec3,
-    pub direction: DVec3,
+pub(crate) struct Exit {
+    pub(crate) position: DVec3,
+    pub(crate) direction: DVec3,
     /// How the searches ended, in order.
-    pub searches: [SearchStatus; 4],
+    pub(crate) searches: [SearchStatus; 4],
     /// How many interfaces were crossed.
-    pub interfaces: u32,
+    pub(crate) interfaces: u32,
     /// Whether the background is what is on screen at `position`.
-    pub direct: bool,
+    pub(crate) direct: bool,
     /// Whether the first interface belongs to the spray.
-    pub spray_first: bool,
+    pub(crate) spray_first: bool,
 }
 
 impl Exit {
     /// `None` where there is no liquid.
-    pub fn at(view: &View, exits: &TextureData, x: u32, y: u32) -> Option<Self> {
+    pub(crate) fn at(view: &View, exits: &TextureData, x: u32, y: u32) -> Option<Self> {
         let [uv, depth, direction, flags] = exits.u32x4(x, y);
         if flags >> 31 == 0 {
             return None;
@@ -49,6 +49,6 @@ fn halves(word: u32) -> [u16; 2] {
 }
 
 /// The status in the lowest four bits.
-pub fn status(bits: u32) -> SearchStatus {
+pub(crate) fn status(bits: u32) -> SearchStatus {
     SearchStatus::ALL[(bits & 15) as usize]
 }

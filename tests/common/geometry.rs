@@ -7,26 +7,26 @@ use super::{Lens, View};
 
 /// A ray from the near plane on, in view space.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray {
-    pub origin: DVec3,
+pub(crate) struct Ray {
+    pub(crate) origin: DVec3,
     /// Unit length.
-    pub direction: DVec3,
+    pub(crate) direction: DVec3,
 }
 
 impl Ray {
-    pub fn at(&self, t: f64) -> DVec3 {
+    pub(crate) fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }
 }
 
 impl View {
     /// The middle of a pixel.
-    pub fn center(pixel: UVec2) -> DVec2 {
+    pub(crate) fn center(pixel: UVec2) -> DVec2 {
         pixel.as_dvec2() + 0.5
     }
 
     /// From a point on screen in pixels.
-    pub fn ndc(&self, point: DVec2) -> DVec2 {
+    pub(crate) fn ndc(&self, point: DVec2) -> DVec2 {
         (2.0 * point / self.size.as_dvec2() - 1.0) * DVec2::new(1.0, -1.0)
     }
 
@@ -40,7 +40,7 @@ impl View {
     }
 
     /// The ray through a point on screen in pixels.
-    pub fn ray(&self, point: DVec2) -> Ray {
+    pub(crate) fn ray(&self, point: DVec2) -> Ray {
         let across = self.ndc(point) * self.half_extent();
         match self.lens {
             Lens::Perspective { near, .. } => {
@@ -58,7 +58,7 @@ impl View {
     }
 
     /// View depth, positive forward, of a device depth.
-    pub fn depth(&self, device: f32) -> f64 {
+    pub(crate) fn depth(&self, device: f32) -> f64 {
         let device = f64::from(device);
         match self.lens {
             Lens::Perspective { near, .. } => f64::from(near) / device,
@@ -67,7 +67,7 @@ impl View {
     }
 
     /// The point in view space at a point on screen in pixels and a device depth.
-    pub fn unproject(&self, point: DVec2, device: f32) -> DVec3 {
+    pub(crate) fn unproject(&self, point: DVec2, device: f32) -> DVec3 {
         let z = self.depth(device);
         let across = self.ndc(point) * self.half_extent();
         match self.lens {
@@ -77,7 +77,7 @@ impl View {
     }
 
     /// Pixels that a metre across the view spans at a view depth.
-    pub fn pixels_per_metre(&self, depth: f64) -> f64 {
+    pub(crate) fn pixels_per_metre(&self, depth: f64) -> f64 {
         let width = match self.lens {
             Lens::Perspective { .. } => depth,
             Lens::Orthographic { .. } => 1.0,
@@ -100,14 +100,14 @@ fn affine(transform: &Transform) -> DAffine3 {
 
 /// The unit sphere under an affine map to view space.
 #[derive(Clone, Copy, Debug)]
-pub struct Ellipsoid {
+pub(crate) struct Ellipsoid {
     view_from_unit: DAffine3,
     unit_from_view: DAffine3,
 }
 
 impl Ellipsoid {
     /// A particle of a fluid that stands at `transform`.
-    pub fn new(view: &View, transform: &Transform, position: Vec3, radius: f32) -> Self {
+    pub(crate) fn new(view: &View, transform: &Transform, position: Vec3, radius: f32) -> Self {
         let sphere = DAffine3::from_scale_rotation_translation(
             DVec3::splat(radius.into()),
             Default::default(),
@@ -121,23 +121,28 @@ impl Ellipsoid {
     }
 
     /// Particles of one radius in world space.
-    pub fn spheres(view: &View, positions: &[Vec3], radius: f32) -> Vec<Self> {
+    pub(crate) fn spheres(view: &View, positions: &[Vec3], radius: f32) -> Vec<Self> {
         let place = Transform::IDENTITY;
         let sphere = |&position| Self::new(view, &place, position, radius);
         positions.iter().map(sphere).collect()
     }
 
     /// Distances along the ray at which it enters and leaves; negative before its origin.
-    pub fn crossings(&self, ray: &Ray) -> Option<[f64; 2]> {
+    pub(crate) fn crossings(&self, ray: &Ray) -> Option<[f64; 2]> {
+        self.scaled_crossings(ray, 1.0)
+    }
+
+    /// The same for the ellipsoid scaled about its centre.
+    pub(crate) fn scaled_crossings(&self, ray: &Ray, scale: f64) -> Option<[f64; 2]> {
         let o = self.unit_from_view.transform_point3(ray.origin);
         let d = self.unit_from_view.transform_vector3(ray.direction);
-        let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - 1.0);
+        let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - scale * scale);
         let disc = b * b - a * c;
         (disc >= 0.0).then(|| [-1.0, 1.0].map(|sign| (-b + sign * disc.sqrt()) / a))
     }
 
     /// Outward unit normal at a point of the surface.
-    pub fn normal(&self, at: DVec3) -> DVec3 {
+    pub(crate) fn normal(&self, at: DVec3) -> DVec3 {
         let unit = self.unit_from_view.transform_point3(at);
         let inverse: DMat3 = self.unit_from_view.matrix3;
         (inverse.transpose() * unit).normalize()
@@ -145,7 +150,7 @@ impl Ellipsoid {
 }
 
 /// The unit vector of an octahedral code.
-pub fn decode_normal([x, y]: [f32; 2]) -> DVec3 {
+pub(crate) fn decode_normal([x, y]: [f32; 2]) -> DVec3 {
     let (x, y) = (f64::from(x), f64::from(y));
     let z = 1.0 - x.abs() - y.abs();
     let fold = (-z).max(0.0);
@@ -154,6 +159,6 @@ pub fn decode_normal([x, y]: [f32; 2]) -> DVec3 {
 }
 
 /// Degrees between two vectors, exact for small angles too.
-pub fn angle(a: DVec3, b: DVec3) -> f64 {
+pub(crate) fn angle(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }

@@ -2,11 +2,11 @@
 
 #![allow(dead_code, unused_imports, reason = "each test file uses a part")]
 
-pub mod exit;
-pub mod geometry;
+pub(crate) mod exit;
+pub(crate) mod geometry;
 
 #[path = "../../src/shape/oracle.rs"]
-pub mod oracle;
+pub(crate) mod oracle;
 
 use bevy::{
     camera::{ScalingMode, Viewport},
@@ -19,14 +19,16 @@ use bevy_fluid::{
     prelude::*,
     render::{Body, Layers, ViewBodies},
 };
-use fluid_stage::{TextureData, headless_app, read_texture, settle};
+use fluid_stage::{TextureData, headless_app, read_texture};
 
-pub use exit::{Exit, status};
-pub use geometry::{Ellipsoid, Ray, angle, decode_normal};
+pub(crate) use fluid_stage::settle;
+
+pub(crate) use exit::{Exit, status};
+pub(crate) use geometry::{Ellipsoid, Ray, angle, decode_normal};
 pub(crate) use oracle::{Random, lattice};
 
 /// Every particle is a sphere of its radius, in the bulk.
-pub const BULK: SurfaceKernel = SurfaceKernel {
+pub(crate) const BULK: SurfaceKernel = SurfaceKernel {
     neighbor_radius: 4.0,
     spray_threshold: 0,
     anisotropic: false,
@@ -39,13 +41,13 @@ pub const BULK: SurfaceKernel = SurfaceKernel {
 };
 
 /// Every particle is a sphere of its radius, in the spray.
-pub const SPRAY: SurfaceKernel = SurfaceKernel {
+pub(crate) const SPRAY: SurfaceKernel = SurfaceKernel {
     spray_threshold: u32::MAX,
     ..BULK
 };
 
 /// Layers as they are splatted, and the least work beyond them.
-pub const RAW: ScreenSpaceFluid = ScreenSpaceFluid {
+pub(crate) const RAW: ScreenSpaceFluid = ScreenSpaceFluid {
     smoothing: Smoothing::None,
     refractions: Refractions::Zero,
     search: Search::BRACKETED,
@@ -55,21 +57,21 @@ pub const RAW: ScreenSpaceFluid = ScreenSpaceFluid {
 
 /// A camera's view.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
-    pub size: UVec2,
-    pub lens: Lens,
-    pub pose: Transform,
+pub(crate) struct View {
+    pub(crate) size: UVec2,
+    pub(crate) lens: Lens,
+    pub(crate) pose: Transform,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Lens {
+pub(crate) enum Lens {
     Perspective { fov: f32, near: f32 },
     Orthographic { height: f32, near: f32, far: f32 },
 }
 
 impl View {
     /// From the origin along −z.
-    pub const fn new(side: u32, lens: Lens) -> Self {
+    pub(crate) const fn new(side: u32, lens: Lens) -> Self {
         Self {
             size: UVec2::splat(side),
             lens,
@@ -77,7 +79,7 @@ impl View {
         }
     }
 
-    pub fn projection(&self) -> Projection {
+    pub(crate) fn projection(&self) -> Projection {
         match self.lens {
             Lens::Perspective { fov, near } => Projection::Perspective(PerspectiveProjection {
                 fov,
@@ -99,12 +101,12 @@ impl View {
     }
 
     /// A camera that draws fluids, over black.
-    pub fn camera(&self, settings: ScreenSpaceFluid) -> impl Bundle {
+    pub(crate) fn camera(&self, settings: ScreenSpaceFluid) -> impl Bundle {
         (self.plain_camera(), settings)
     }
 
     /// The same camera without fluids.
-    pub fn plain_camera(&self) -> impl Bundle {
+    pub(crate) fn plain_camera(&self) -> impl Bundle {
         (
             Camera3d::default(),
             Camera {
@@ -121,12 +123,12 @@ impl View {
 }
 
 /// An app that shows `scene` in this view, its pipelines compiled.
-pub fn show(view: &View, settings: ScreenSpaceFluid, scene: impl FnOnce(&mut World)) -> App {
+pub(crate) fn show(view: &View, settings: ScreenSpaceFluid, scene: impl FnOnce(&mut World)) -> App {
     show_with(FluidPlugin::default(), view, settings, scene)
 }
 
 /// The same with a plugin that is not the default.
-pub fn show_with(
+pub(crate) fn show_with(
     plugin: FluidPlugin,
     view: &View,
     settings: ScreenSpaceFluid,
@@ -143,7 +145,7 @@ pub fn show_with(
 }
 
 /// The only entity with a component.
-pub fn only<C: Component>(app: &mut App) -> Entity {
+pub(crate) fn only<C: Component>(app: &mut App) -> Entity {
     let world = app.world_mut();
     world
         .query_filtered::<Entity, With<C>>()
@@ -152,14 +154,14 @@ pub fn only<C: Component>(app: &mut App) -> Entity {
 }
 
 /// Gives the only camera other components, and settles.
-pub fn look(app: &mut App, bundle: impl Bundle) {
+pub(crate) fn look(app: &mut App, bundle: impl Bundle) {
     let camera = only::<Camera3d>(app);
     app.world_mut().entity_mut(camera).insert(bundle);
     settle(app).unwrap();
 }
 
 /// Puts one fluid in place of all others, and settles.
-pub fn pour(app: &mut App, fluid: impl Bundle) {
+pub(crate) fn pour(app: &mut App, fluid: impl Bundle) {
     let world = app.world_mut();
     let old: Vec<_> = world
         .query_filtered::<Entity, With<FluidParticles>>()
@@ -173,7 +175,7 @@ pub fn pour(app: &mut App, fluid: impl Bundle) {
 }
 
 /// A fluid of water that absorbs nothing.
-pub fn fluid(positions: &[Vec3], radius: f32, kernel: SurfaceKernel) -> impl Bundle + use<> {
+pub(crate) fn fluid(positions: &[Vec3], radius: f32, kernel: SurfaceKernel) -> impl Bundle + use<> {
     (
         FluidParticles::new(positions.to_vec(), radius),
         kernel,
@@ -182,7 +184,7 @@ pub fn fluid(positions: &[Vec3], radius: f32, kernel: SurfaceKernel) -> impl Bun
 }
 
 /// An opaque box.
-pub fn spawn_box(world: &mut World, size: Vec3, transform: Transform) -> Entity {
+pub(crate) fn spawn_box(world: &mut World, size: Vec3, transform: Transform) -> Entity {
     let mesh = world
         .resource_mut::<Assets<Mesh>>()
         .add(Cuboid::from_size(size));
@@ -199,7 +201,7 @@ pub fn spawn_box(world: &mut World, size: Vec3, transform: Transform) -> Entity 
 }
 
 /// What the first view that sees liquid holds of it.
-pub fn view_bodies(app: &App) -> Option<&ViewBodies> {
+pub(crate) fn view_bodies(app: &App) -> Option<&ViewBodies> {
     app.sub_app(RenderApp)
         .world()
         .iter_entities()
@@ -207,7 +209,7 @@ pub fn view_bodies(app: &App) -> Option<&ViewBodies> {
 }
 
 /// The only body in view.
-pub fn body(app: &App) -> &Body {
+pub(crate) fn body(app: &App) -> &Body {
     let [body] = &view_bodies(app).expect("liquid is in view").bodies[..] else {
         panic!("one body is in view");
     };
@@ -215,19 +217,19 @@ pub fn body(app: &App) -> &Body {
 }
 
 /// One of the only body's textures: `read(&app, Layers::bulk)`.
-pub fn read(app: &App, pick: fn(&Layers) -> &Texture) -> TextureData {
+pub(crate) fn read(app: &App, pick: fn(&Layers) -> &Texture) -> TextureData {
     read_texture(app, pick(&body(app).layers)).unwrap()
 }
 
 /// All pixels of a texture.
-pub fn pixels(size: UVec2) -> impl Iterator<Item = UVec2> {
+pub(crate) fn pixels(size: UVec2) -> impl Iterator<Item = UVec2> {
     (0..size.y).flat_map(move |y| (0..size.x).map(move |x| uvec2(x, y)))
 }
 
 /// A thin disc, `half_width` in radius, whose normal is +z before `rotation`: flat to within its
 /// thickness. It is one particle of the
 /// bulk, in a fluid scaled to almost nothing along z.
-pub fn plate(half_width: f32, center: Vec3, rotation: Quat) -> impl Bundle + use<> {
+pub(crate) fn plate(half_width: f32, center: Vec3, rotation: Quat) -> impl Bundle + use<> {
     (
         fluid(&[Vec3::ZERO], 1.0, BULK),
         plate_transform(half_width, center, rotation),
@@ -235,7 +237,7 @@ pub fn plate(half_width: f32, center: Vec3, rotation: Quat) -> impl Bundle + use
 }
 
 /// The transform that makes the unit sphere a [`plate`].
-pub fn plate_transform(half_width: f32, center: Vec3, rotation: Quat) -> Transform {
+pub(crate) fn plate_transform(half_width: f32, center: Vec3, rotation: Quat) -> Transform {
     Transform {
         translation: center,
         rotation,
@@ -244,4 +246,4 @@ pub fn plate_transform(half_width: f32, center: Vec3, rotation: Quat) -> Transfo
 }
 
 /// Half of the thickness of a [`plate`].
-pub const PLATE_THICKNESS: f32 = 1e-4;
+pub(crate) const PLATE_THICKNESS: f32 = 1e-4;

@@ -1,6 +1,6 @@
 //! Where to look from.
 
-use bevy::{math::bounding::Aabb3d, prelude::*};
+use bevy::{camera::Hdr, math::bounding::Aabb3d, prelude::*};
 use bevy_panorbit_camera::PanOrbitCamera;
 
 /// From the box towards the eye: from the right and a little above.
@@ -12,6 +12,8 @@ const MARGIN: f32 = 1.15;
 pub fn orbit_camera(eye: Vec3, target: Vec3) -> impl Bundle {
     (
         Camera3d::default(),
+        // Else Bevy tone-maps the scene but not the sky behind it.
+        Hdr,
         Transform::from_translation(eye).looking_at(target, Vec3::Y),
         // Without a window there is no plugin to move it, and it is only data.
         PanOrbitCamera {

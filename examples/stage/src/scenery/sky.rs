@@ -12,13 +12,14 @@ use super::{
     cubemap::{Cubemap, cube_image},
 };
 
-const ZENITH: Vec3 = Vec3::new(0.10, 0.25, 0.60);
-const HORIZON: Vec3 = Vec3::new(0.62, 0.74, 0.86);
-const CLOUD: Vec3 = Vec3::new(0.95, 0.96, 1.0);
+const ZENITH: Vec3 = Vec3::new(0.08, 0.24, 0.66);
+const HORIZON: Vec3 = Vec3::new(0.74, 0.90, 1.06);
+const CLOUD: Vec3 = Vec3::new(1.35, 1.36, 1.40);
 const GLOW: Vec3 = Vec3::new(1.0, 0.86, 0.62);
-const GROUND: Vec3 = Vec3::new(0.34, 0.33, 0.31);
-/// Unit: cd/m² for a radiance of 1. With Bevy's default exposure (EV100 9.7) this is white.
-const BRIGHTNESS: f32 = 1000.0;
+const GROUND: Vec3 = Vec3::new(0.32, 0.31, 0.28);
+/// Unit: cd/m² for a radiance of 1. With Bevy's default exposure (EV100 9.7) 1000 is where white
+/// begins; tone mapping asks for more.
+const BRIGHTNESS: f32 = 1600.0;
 
 /// Texels along a face, and the mip levels for rougher and rougher reflections.
 const SIDE: usize = 256;
