@@ -144,11 +144,12 @@ impl Sources<'_> {
             &layout,
             &BindGroupEntries::sequential((
                 &self.environment(body).texture_view,
-                &self.placeholders.sampler,
+                &self.placeholders.linear,
                 layers.bulk_view(),
                 &layers.bulk_normals.default_view,
                 &layers.spray.default_view,
                 &layers.spray_normals.default_view,
+                &self.placeholders.nearest,
             )),
         )
     }
@@ -161,14 +162,14 @@ impl Sources<'_> {
             &layout,
             &BindGroupEntries::sequential((
                 &self.environment(body).texture_view,
-                &self.placeholders.sampler,
+                &self.placeholders.linear,
                 &layers.radiance.default_view,
                 &layers.transmission.default_view,
                 &layers.exits.default_view,
                 layers.bulk_view(),
                 &layers.spray.default_view,
                 scene_color,
-                &self.placeholders.sampler,
+                &self.placeholders.linear,
             )),
         )
     }

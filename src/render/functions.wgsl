@@ -54,6 +54,13 @@ fn view_depth(map: DepthMap, d: f32) -> f32 {
     return -(map.numerator.x + map.numerator.y * d) / (map.denominator.x + map.denominator.y * d);
 }
 
+// Derivative of the view depth by device depth.
+fn depth_slope(map: DepthMap, d: vec2<f32>) -> vec2<f32> {
+    let w = map.denominator.x + map.denominator.y * d;
+    let area = map.numerator.x * map.denominator.y - map.numerator.y * map.denominator.x;
+    return vec2(area) / (w * w);
+}
+
 fn device_depth(map: DepthMap, z: f32) -> f32 {
     return -(map.numerator.x + z * map.denominator.x) / (map.numerator.y + z * map.denominator.y);
 }

@@ -4,8 +4,8 @@ use bevy::{
     prelude::*,
     render::{
         render_resource::{
-            AddressMode, Extent3d, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor,
-            TextureDataOrder, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+            AddressMode, Extent3d, FilterMode, Sampler, SamplerDescriptor, TextureDataOrder,
+            TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
             TextureViewDescriptor,
         },
         renderer::{RenderDevice, RenderQueue},
@@ -21,7 +21,9 @@ pub(crate) struct Placeholders {
     /// One pixel of "nothing here".
     pub(crate) layers: CachedTexture,
     /// Smooth lookups that stop at the border.
-    pub(crate) sampler: Sampler,
+    pub(crate) linear: Sampler,
+    /// For what must not be mixed.
+    pub(crate) nearest: Sampler,
 }
 
 pub(crate) fn init_placeholders(
@@ -55,16 +57,20 @@ pub(crate) fn init_placeholders(
             texture,
             default_view,
         },
-        sampler: device.create_sampler(&SamplerDescriptor {
-            label: Some("fluid_smooth_sampler"),
-            address_mode_u: AddressMode::ClampToEdge,
-            address_mode_v: AddressMode::ClampToEdge,
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            mipmap_filter: MipmapFilterMode::Linear,
-            ..default()
-        }),
+        linear: sampler(&device, FilterMode::Linear),
+        nearest: sampler(&device, FilterMode::Nearest),
     });
+}
+
+fn sampler(device: &RenderDevice, filter: FilterMode) -> Sampler {
+    device.create_sampler(&SamplerDescriptor {
+        label: Some("fluid_sampler"),
+        address_mode_u: AddressMode::ClampToEdge,
+        address_mode_v: AddressMode::ClampToEdge,
+        mag_filter: filter,
+        min_filter: filter,
+        ..default()
+    })
 }
 
 /// A texture as large as a view's target, to be drawn or copied to.

@@ -76,13 +76,12 @@ impl View {
         }
     }
 
-    /// Pixels that a metre across the view spans at a view depth.
-    pub(crate) fn pixels_per_metre(&self, depth: f64) -> f64 {
-        let width = match self.lens {
-            Lens::Perspective { .. } => depth,
-            Lens::Orthographic { .. } => 1.0,
-        };
-        0.5 * f64::from(self.size.y) / (self.half_extent().y * width)
+    /// Half of what is seen across and upwards at a view depth.
+    pub(crate) fn half_extent_at(&self, depth: f64) -> DVec2 {
+        match self.lens {
+            Lens::Perspective { .. } => self.half_extent() * depth,
+            Lens::Orthographic { .. } => self.half_extent(),
+        }
     }
 
     fn view_from_world(&self) -> DAffine3 {

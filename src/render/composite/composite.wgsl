@@ -23,7 +23,9 @@ struct Output {
 
 const THERE: u32 = 0x80000000u;
 const DIRECT: u32 = 0x80000u;
-const STEPS: i32 = 24;
+// A step is some pixels long: short tracks take few.
+const STEP_PIXELS: f32 = 6.0;
+const MAX_STEPS: f32 = 32.0;
 const REFINEMENTS: i32 = 5;
 
 fn color_at(pixel: vec2<f32>) -> vec3<f32> {
@@ -78,9 +80,11 @@ fn scene_on(track: Track, s: f32) -> f32 {
 // The scene's colour where the ray meets its depth, else the environment.
 fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
     let way = track(position, direction);
+    let pixels = length(pixel_on(way, 1.0) - pixel_on(way, 0.0));
+    let steps = clamp(ceil(pixels / STEP_PIXELS), 4.0, MAX_STEPS);
     var before = 0.0;
-    for (var i = 1; i <= STEPS; i += 1) {
-        var s = f32(i) / f32(STEPS);
+    for (var i = 1.0; i <= steps; i += 1.0) {
+        var s = i / steps;
         let ray_depth = mix(way.start.z, way.end.z, s);
         let scene_depth = scene_on(way, s);
         // Reverse z: behind something. It is met if it lies within the step, not if it covers

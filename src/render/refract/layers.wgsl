@@ -3,7 +3,7 @@
 
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{
-    decode_normal, depth_map, has_back, has_front, nearest_scene_depth, ndc_from_pixel,
+    DepthMap, decode_normal, depth_map, depth_slope, has_back, has_front, nearest_scene_depth, ndc_from_pixel,
     pixel_from_ndc, view_depth,
 }
 #import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
@@ -12,6 +12,7 @@
 @group(1) @binding(3) var bulk_normals: texture_2d<f32>;
 @group(1) @binding(4) var spray_layers: texture_2d<f32>;
 @group(1) @binding(5) var spray_normals: texture_2d<f32>;
+@group(1) @binding(6) var nearest_sampler: sampler;
 
 const BULK: u32 = 0u;
 const SPRAY: u32 = 1u;
@@ -47,15 +48,6 @@ fn load_layers(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
     return vec2(NO_FRONT, NO_BACK);
 }
 
-// Device depth of one side, 0 where there is none.
-fn load_side(kind: u32, side: u32, pixel: vec2<i32>) -> f32 {
-    let layers = load_layers(kind, pixel);
-    if side == FRONT {
-        return select(0.0, layers.x, has_front(layers));
-    }
-    return select(0.0, -layers.y, has_back(layers));
-}
-
 fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
     var encoded = vec4(0.0);
 #ifdef BULK_LAYERS
@@ -72,8 +64,8 @@ fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
     return select(-decode_normal(encoded.zw), decode_normal(encoded.xy), side == FRONT);
 }
 
-// Bilinear weights of the four pixels about a point, from the one with the smaller coordinates
-// on. Pixels that are not there or belong to another surface than the nearest get none.
+// Bilinear weights of the four pixels about a point, in the order of `textureGather`. Pixels that
+// are not there or belong to another surface than the nearest get none.
 struct Quad {
     there: bool,
     base: vec2<i32>,
@@ -81,47 +73,71 @@ struct Quad {
     depths: vec4<f32>,
 }
 
-fn corner(i: u32) -> vec2<i32> {
-    return vec2(i32(i & 1u), i32(i >> 1u));
+const CORNERS_X: vec4<f32> = vec4(0.0, 1.0, 1.0, 0.0);
+const CORNERS_Y: vec4<f32> = vec4(1.0, 1.0, 0.0, 0.0);
+
+// Device depths of one side, not above 0 where there is none.
+fn gather_depths(kind: u32, side: u32, base: vec2<f32>) -> vec4<f32> {
+#ifdef BULK_LAYERS
+    if kind == BULK {
+        // The middle of the four: no rounding picks others.
+        let uv = (base + 1.0) / vec2<f32>(textureDimensions(bulk_layers));
+        if side == FRONT {
+            return textureGather(0, bulk_layers, nearest_sampler, uv);
+        }
+        return back_depths(textureGather(1, bulk_layers, nearest_sampler, uv));
+    }
+#endif
+#ifdef SPRAY_LAYERS
+    if kind == SPRAY {
+        let uv = (base + 1.0) / vec2<f32>(textureDimensions(spray_layers));
+        if side == FRONT {
+            return textureGather(0, spray_layers, nearest_sampler, uv);
+        }
+        return back_depths(textureGather(1, spray_layers, nearest_sampler, uv));
+    }
+#endif
+    return vec4(0.0);
 }
 
-fn quad_at(kind: u32, side: u32, pixel: vec2<f32>) -> Quad {
+fn back_depths(stored: vec4<f32>) -> vec4<f32> {
+    return select(vec4(0.0), -stored, stored > vec4(NO_BACK));
+}
+
+fn quad_at(kind: u32, side: u32, pixel: vec2<f32>, map: DepthMap) -> Quad {
     var out: Quad;
     let p = pixel - 0.5;
-    let f = fract(p);
-    out.base = vec2<i32>(floor(p));
-    let nearest = u32(f.x >= 0.5) + 2u * u32(f.y >= 0.5);
-    let map = depth_map(ndc_from_pixel(pixel));
-    for (var i = 0u; i < 4u; i += 1u) {
-        out.depths[i] = load_side(kind, side, out.base + corner(i));
-    }
-    out.there = out.depths[nearest] > 0.0;
-    let reference = view_depth(map, out.depths[nearest]);
-    for (var i = 0u; i < 4u; i += 1u) {
-        let c = vec2<f32>(corner(i));
-        let w = (1.0 - abs(f.x - c.x)) * (1.0 - abs(f.y - c.y));
-        let same = out.depths[i] > 0.0
-            && abs(view_depth(map, out.depths[i]) - reference) <= 2.0 * body.radius;
-        out.weights[i] = select(0.0, w, same);
-    }
+    let base = floor(p);
+    let f = p - base;
+    out.base = vec2<i32>(base);
+    out.depths = gather_depths(kind, side, base);
+    let w = (1.0 - abs(f.x - CORNERS_X)) * (1.0 - abs(f.y - CORNERS_Y));
+    let near_x = select(vec2(out.depths.w, out.depths.x), vec2(out.depths.z, out.depths.y), f.x >= 0.5);
+    let nearest = select(near_x.x, near_x.y, f.y >= 0.5);
+    out.there = nearest > 0.0;
+    // Particles apart in device depth, to first order.
+    let apart = 2.0 * body.radius / abs(depth_slope(map, vec2(nearest)).x);
+    let same = out.depths > vec4(0.0) & abs(out.depths - nearest) <= vec4(apart);
+    out.weights = select(vec4(0.0), w, same);
     out.weights /= max(dot(out.weights, vec4(1.0)), 1e-20);
     return out;
 }
 
 // Device depth is affine over a plane, so it is what is interpolated.
 fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>) -> Depth {
-    let quad = quad_at(kind, side, pixel);
-    let d = dot(quad.weights, quad.depths);
-    return Depth(quad.there, view_depth(depth_map(ndc_from_pixel(pixel)), d));
+    let map = depth_map(ndc_from_pixel(pixel));
+    let quad = quad_at(kind, side, pixel, map);
+    return Depth(quad.there, view_depth(map, dot(quad.weights, quad.depths)));
 }
 
 // Outward unit normal. A layer that has none there gives the direction to the viewer.
 fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
-    let quad = quad_at(kind, side, pixel);
+    let quad = quad_at(kind, side, pixel, depth_map(ndc_from_pixel(pixel)));
     var sum = vec3(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
         if quad.weights[i] > 0.0 {
-            sum += quad.weights[i] * load_normal(kind, side, quad.base + corner(i));
+            let corner = vec2<i32>(vec2(CORNERS_X[i], CORNERS_Y[i]));
+            sum += quad.weights[i] * load_normal(kind, side, quad.base + corner);
         }
     }
     let size = length(sum);

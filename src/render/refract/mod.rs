@@ -36,7 +36,7 @@ pub(crate) struct RefractKey {
 #[derive(Resource)]
 pub(crate) struct RefractPipeline {
     fullscreen: VertexState,
-    /// Environment map, its sampler, layers and normals of bulk and spray.
+    /// Environment map, its sampler, layers and normals of bulk and spray, their sampler.
     pub(crate) layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
@@ -60,6 +60,7 @@ pub(crate) fn init_refract_pipeline(
                     unfiltered(),
                     unfiltered(),
                     unfiltered(),
+                    sampler(SamplerBindingType::NonFiltering),
                 ),
             ),
         ),

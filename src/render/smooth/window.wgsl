@@ -3,7 +3,7 @@
 
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{
-    DepthMap, depth_map, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
+    DepthMap, depth_map, depth_slope, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
     view_from_device,
 }
 #import bevy_fluid::render::types::INSIDE_FRONT
@@ -21,6 +21,8 @@ struct Window {
     center: vec4<f32>,
     valid: vec2<bool>,
     depth: vec2<f32>,
+    // View depth over device depth at the centre, in units of the range.
+    steepness: vec2<f32>,
     spacing: i32,
     // Half width in taps, fractional.
     half_taps: f32,
@@ -49,6 +51,7 @@ fn window_at(position: vec2<f32>) -> Window {
     out.center = textureLoad(layers, out.pixel, 0);
     out.valid = valid_layers(out.center.xy);
     out.depth = view_depths(out.map, out.center.xy);
+    out.steepness = depth_slope(out.map, abs(out.center.xy)) / body.range;
     out.spacing = 1;
     out.half_taps = f32(#{HALF_TAPS});
     if body.window_radii > 0.0 {
@@ -76,7 +79,8 @@ fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
         return out;
     }
     out.value = textureLoad(layers, pixel, 0);
-    let apart = (view_depths(window.map, out.value.xy) - window.depth) / body.range;
+    // To first order: where it matters, taps are near.
+    let apart = (out.value.xy - window.center.xy) * window.steepness;
     let weight = edge * exp(-apart * apart);
     out.weight = select(vec2(0.0), weight, window.valid & valid_layers(out.value.xy));
     return out;
