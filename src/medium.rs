@@ -5,7 +5,7 @@ use bevy::prelude::*;
 /// A homogeneous medium that absorbs light.
 ///
 /// Along a path of length `d` metres the fraction `exp(-B d)` of each channel is left, with
-/// `B = density · (1 − color)` (Beer–Lambert; the absorption terms α_A and C_A of the volume
+/// `B = density · (1 − color)` (Beer–Lambert; the absorption terms `α_A` and `C_A` of the volume
 /// article).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]

@@ -12,30 +12,30 @@ use clap::{Parser, ValueEnum, builder::PossibleValuesParser, error::ErrorKind};
 /// Draws the particles of a file as a liquid.
 #[derive(Parser, Debug)]
 #[command(name = "viewer")]
-pub struct Args {
+pub(crate) struct Args {
     /// Particles: .vtk, .bgeo, .ply or .xyz (binary f32 triples)
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Particle radius in the file's units
     #[arg(long, value_parser = positive)]
-    pub radius: f32,
+    pub(crate) radius: f32,
     /// Width and height in pixels
     #[arg(long, default_value = "640x480", value_parser = size)]
-    pub size: UVec2,
+    pub(crate) size: UVec2,
     /// Where the camera stands; chosen from the particles' bounds if not given
     #[arg(long, value_parser = vector, allow_hyphen_values = true)]
-    pub eye: Option<Vec3>,
+    pub(crate) eye: Option<Vec3>,
     /// What the camera looks at
     #[arg(long, value_parser = vector, allow_hyphen_values = true)]
-    pub look_at: Option<Vec3>,
+    pub(crate) look_at: Option<Vec3>,
     /// Vertical field of view in degrees
     #[arg(long, default_value = "40", value_parser = angle)]
-    pub fov: f32,
+    pub(crate) fov: f32,
     /// Parallel projection
     #[arg(long)]
-    pub orthographic: bool,
+    pub(crate) orthographic: bool,
     /// How the bulk is smoothed
     #[arg(long, value_enum, default_value_t = SmoothingArg::PlaneFitSeparable)]
-    pub smoothing: SmoothingArg,
+    pub(crate) smoothing: SmoothingArg,
     /// How many interfaces are refracted
     #[arg(long, default_value = "4", value_parser = PossibleValuesParser::new(["0", "1", "2", "4"]))]
     refractions: String,
@@ -47,23 +47,23 @@ pub struct Args {
     fresnel: FresnelArg,
     /// Spheres instead of anisotropic kernels
     #[arg(long)]
-    pub isotropic: bool,
+    pub(crate) isotropic: bool,
     /// Show an intermediate result instead of the liquid
     #[arg(long, value_enum)]
     debug_view: Option<DebugViewArg>,
     /// Frames to render; statistics are medians over them
     #[arg(long, default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
-    pub frames: u32,
+    pub(crate) frames: u32,
     /// Write a picture (PNG) instead of opening a window
     #[arg(long)]
-    pub out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Write counts and times (JSON)
     #[arg(long)]
-    pub stats: Option<PathBuf>,
+    pub(crate) stats: Option<PathBuf>,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
-pub enum SmoothingArg {
+pub(crate) enum SmoothingArg {
     None,
     PlaneFitTls,
     PlaneFit,
@@ -97,7 +97,7 @@ enum DebugViewArg {
 
 impl Args {
     /// Ends the program with one line and exit code 2 where the command line makes no sense.
-    pub fn from_command_line() -> Self {
+    pub(crate) fn from_command_line() -> Self {
         Self::try_parse().unwrap_or_else(|error| {
             if matches!(
                 error.kind(),
@@ -114,7 +114,7 @@ impl Args {
         })
     }
 
-    pub fn settings(&self) -> ScreenSpaceFluid {
+    pub(crate) fn settings(&self) -> ScreenSpaceFluid {
         let plane = |form| {
             Smoothing::PlaneFit(PlaneFit {
                 form,
@@ -147,7 +147,7 @@ impl Args {
         }
     }
 
-    pub fn debug_view(&self) -> Option<FluidDebugView> {
+    pub(crate) fn debug_view(&self) -> Option<FluidDebugView> {
         Some(match self.debug_view? {
             DebugViewArg::BulkFront => FluidDebugView::BulkFront,
             DebugViewArg::BulkBack => FluidDebugView::BulkBack,

@@ -9,7 +9,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use bevy::prelude::*;
 
 /// Reads the particles of a file; an error names the file and what is wrong with it.
-pub fn read(path: &Path) -> anyhow::Result<Vec<Vec3>> {
+pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Vec3>> {
     let name = path.display();
     let bytes = std::fs::metadata(path)
         .with_context(|| format!("cannot read {name}"))?

@@ -12,7 +12,7 @@ use crate::args::Args;
 
 /// Everything that is drawn.
 #[derive(Resource, Clone)]
-pub struct ScenePlugin {
+pub(crate) struct ScenePlugin {
     positions: Vec<Vec3>,
     radius: f32,
     isotropic: bool,
@@ -26,7 +26,7 @@ pub struct ScenePlugin {
 }
 
 impl ScenePlugin {
-    pub fn new(args: &Args, positions: Vec<Vec3>) -> Self {
+    pub(crate) fn new(args: &Args, positions: Vec<Vec3>) -> Self {
         Self {
             positions,
             radius: args.radius,

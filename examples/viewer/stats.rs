@@ -42,7 +42,7 @@ struct GpuTimes {
 }
 
 /// Complains now rather than after rendering.
-pub fn check_writable(path: &Path) -> anyhow::Result<&Path> {
+pub(crate) fn check_writable(path: &Path) -> anyhow::Result<&Path> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -53,7 +53,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<&Path> {
         .ok_or_else(|| anyhow!("cannot write {}: no such folder", path.display()))
 }
 
-pub fn gather(app: &App) -> anyhow::Result<String> {
+pub(crate) fn gather(app: &App) -> anyhow::Result<String> {
     let (particles, shaped) = app
         .world()
         .iter_entities()

@@ -31,6 +31,12 @@ fn on_screen(pixel: vec2<f32>) -> bool {
     return all(uv >= vec2(0.0)) && all(uv < vec2(1.0));
 }
 
+// The point of the screen that is nearest to one outside of it.
+fn clamp_to_view(pixel: vec2<f32>) -> vec2<f32> {
+    let low = view.main_pass_viewport.xy + 0.5;
+    return clamp(pixel, low, low + view.main_pass_viewport.zw - 1.0);
+}
+
 fn load_layers(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
     if !on_screen(vec2<f32>(pixel) + 0.5) {
         return vec2(NO_FRONT, NO_BACK);
@@ -132,7 +138,8 @@ fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>) -> Depth {
 
 // Outward unit normal. A layer that has none there gives the direction to the viewer.
 fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
-    let quad = quad_at(kind, side, pixel, depth_map(ndc_from_pixel(pixel)));
+    let inside = clamp_to_view(pixel);
+    let quad = quad_at(kind, side, inside, depth_map(ndc_from_pixel(inside)));
     var sum = vec3(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
         if quad.weights[i] > 0.0 {
@@ -145,9 +152,6 @@ fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
 }
 
 fn scene_view_depth(pixel: vec2<f32>) -> Depth {
-    if !on_screen(pixel) {
-        return Depth(false, 0.0);
-    }
     let d = nearest_scene_depth(vec2<i32>(pixel));
     return Depth(d > 0.0, view_depth(depth_map(ndc_from_pixel(pixel)), d));
 }

@@ -7,11 +7,11 @@
 }
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
 #import bevy_fluid::render::refract::layers::{
-    BACK, BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal,
+    BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal, on_screen,
 }
 #import bevy_fluid::render::refract::search::{Found, Target, meets_scene, pixel_of, search}
 #import bevy_fluid::render::types::{
-    INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_NO_BRACKET, STATUS_OPAQUE,
+    INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
 }
 
@@ -129,7 +129,8 @@ fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
             both = true;
             continue;
         }
-        note(path, found.status);
+        let on_border = !on_screen(pixel_of((*path).position));
+        note(path, select(found.status, STATUS_LEFT_LAYER, on_border));
         if !may_enter || (*path).interfaces >= INTERFACES {
             return;
         }

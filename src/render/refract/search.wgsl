@@ -4,7 +4,7 @@
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{pixel_from_ndc, pixels_per_metre}
 #import bevy_fluid::render::refract::layers::{
-    BACK, Depth, FRONT, layer_depth, on_screen, scene_view_depth,
+    BACK, FRONT, clamp_to_view, layer_depth, on_screen, scene_view_depth,
 }
 #import bevy_fluid::render::types::{
     STATUS_BUDGET, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET,
@@ -40,39 +40,44 @@ struct Found {
 const EVALUATIONS: i32 = 8;
 const SECANT_EVALUATIONS: i32 = 16;
 
+// Where a point is on screen; points behind the eye are nowhere.
 fn pixel_of(position: vec3<f32>) -> vec2<f32> {
     let clip = view.clip_from_view * vec4(position, 1.0);
-    // Behind the eye: nowhere on screen.
-    return select(vec2(-1e9), pixel_from_ndc(clip.xy / clip.w), clip.w > 0.0);
+    return select(vec2(NOWHERE), pixel_from_ndc(clip.xy / clip.w), clip.w > 0.0);
 }
+
+const NOWHERE: f32 = -1e9;
 
 fn gap_at(to: Target, position: vec3<f32>) -> Gap {
     let pixel = pixel_of(position);
     let z = -position.z;
     var out = Gap(false, select(-1.0, 1.0, to.leaving), select(FRONT, BACK, to.leaving), on_screen(pixel));
-    if !out.seen {
+    if pixel.x == NOWHERE {
         return out;
     }
+    // Off the screen the liquid and the solids are taken to go on as they are at its border;
+    // droplets are not.
+    let asked = clamp_to_view(pixel);
     if to.scene {
-        let scene = scene_view_depth(pixel);
+        let scene = scene_view_depth(asked);
         out.known = scene.there;
         out.value = select(-1.0, z - scene.z, scene.there);
         return out;
     }
     if !to.leaving {
-        let front = layer_depth(to.kind, FRONT, pixel);
-        out.known = front.there;
-        out.value = select(-1.0, z - front.z, front.there);
+        let front = layer_depth(to.kind, FRONT, asked);
+        out.known = front.there && out.seen;
+        out.value = select(-1.0, z - front.z, out.known);
         return out;
     }
-    let back = layer_depth(to.kind, BACK, pixel);
+    let back = layer_depth(to.kind, BACK, asked);
     if !back.there {
         return out;
     }
     out.known = true;
     out.value = z - back.z;
     if to.both {
-        let front = layer_depth(to.kind, FRONT, pixel);
+        let front = layer_depth(to.kind, FRONT, asked);
         if front.there && front.z - z > out.value {
             out.value = front.z - z;
             out.side = FRONT;
@@ -177,7 +182,7 @@ fn search_bracketed(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: 
         }
         b.low = t;
         b.low_gap = gap;
-        if !gap.seen {
+        if !gap.seen && !to.leaving {
             break;
         }
         if u32(i + 1) >= body.coarse_samples {
