@@ -16,7 +16,7 @@ pub(crate) struct Args {
     /// Particles: .vtk, .bgeo, .ply or .xyz (binary f32 triples)
     pub(crate) file: PathBuf,
     /// Particle radius in the file's units
-    #[arg(long, value_parser = positive)]
+    #[arg(long, value_parser = positive, allow_hyphen_values = true)]
     pub(crate) radius: f32,
     /// Width and height in pixels
     #[arg(long, default_value = "640x480", value_parser = size)]
@@ -28,7 +28,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = vector, allow_hyphen_values = true)]
     pub(crate) look_at: Option<Vec3>,
     /// Vertical field of view in degrees
-    #[arg(long, default_value = "40", value_parser = angle)]
+    #[arg(long, default_value = "40", value_parser = angle, allow_hyphen_values = true)]
     pub(crate) fov: f32,
     /// Parallel projection
     #[arg(long)]

@@ -13,7 +13,7 @@ mod stats;
 
 use std::process::ExitCode;
 
-use anyhow::Context;
+use anyhow::anyhow;
 use bevy::prelude::*;
 use fluid_stage::{
     PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle, step,
@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     match run(&args) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("{error:#}");
+            eprintln!("{error}");
             ExitCode::from(2)
         }
     }
@@ -70,7 +70,8 @@ fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if let Some(path) = stats_file {
         let stats = stats::gather(&app)?;
-        std::fs::write(path, stats).with_context(|| format!("cannot write {}", path.display()))?;
+        std::fs::write(path, stats)
+            .map_err(|error| anyhow!("cannot write {}: {error}", path.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -5,14 +5,14 @@ use std::{
     path::Path,
 };
 
-use anyhow::{Context, anyhow, bail, ensure};
+use anyhow::{anyhow, bail, ensure};
 use bevy::prelude::*;
 
 /// Reads the particles of a file; an error names the file and what is wrong with it.
 pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Vec3>> {
     let name = path.display();
     let bytes = std::fs::metadata(path)
-        .with_context(|| format!("cannot read {name}"))?
+        .map_err(|error| anyhow!("cannot read {name}: {error}"))?
         .len();
     ensure!(bytes > 0, "{name} is empty");
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");

@@ -1,1 +1,164 @@
+//! Every shader variant that a setting can ask for composes, validates and makes a pipeline.
 
+use bevy::{
+    prelude::*,
+    render::{
+        RenderApp,
+        render_resource::{
+            CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipeline,
+            SpecializedRenderPipelines, TextureFormat,
+        },
+    },
+};
+use fluid_stage::{headless_app, settle};
+
+use super::{
+    composite::{CompositeKey, CompositePipeline},
+    normals::{NormalSource, NormalsPipeline},
+    refract::{RefractKey, RefractPipeline},
+    smooth::{SmoothPipeline, SmoothSteps},
+    splat::{SplatOutput, SplatPipeline},
+};
+use crate::{
+    FluidPlugin,
+    settings::{Bilateral, FluidDebugView, PlaneFit, PlaneFitForm, Smoothing},
+};
+
+const BOTH: [bool; 2] = [false, true];
+
+/// All pairs, `a` first.
+fn pairs<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
+    a.iter()
+        .flat_map(|&a| b.iter().map(move |&b| (a, b)))
+        .collect()
+}
+
+/// Has the app's render world ask for pipelines, and all of them made.
+fn assert_made(ask: impl FnOnce(&World) -> Vec<CachedRenderPipelineId>) {
+    let mut app = headless_app(UVec2::splat(16), |app| {
+        app.add_plugins(FluidPlugin::default());
+    })
+    .unwrap();
+    // What is made without being asked for, as the merge of two depths.
+    settle(&mut app).unwrap();
+    let ids = ask(app.sub_app(RenderApp).world());
+    // An error here names the pipeline and what is wrong with it.
+    settle(&mut app).unwrap();
+    let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
+    assert!(!ids.is_empty());
+    for id in ids {
+        let state = cache.get_render_pipeline_state(id);
+        assert!(matches!(state, CachedPipelineState::Ok(_)), "{state:?}");
+    }
+}
+
+fn assert_variants<P: SpecializedRenderPipeline + Resource>(keys: Vec<P::Key>) {
+    assert_made(|world| {
+        let (pipeline, cache) = (world.resource::<P>(), world.resource::<PipelineCache>());
+        keys.into_iter()
+            .map(|key| cache.queue_render_pipeline(pipeline.specialize(key)))
+            .collect()
+    });
+}
+
+#[test]
+fn every_splat_output_is_made() {
+    assert_variants::<SplatPipeline>(vec![
+        SplatOutput::Layers,
+        SplatOutput::FrontDepth,
+        SplatOutput::BackDepth,
+    ]);
+}
+
+#[test]
+fn every_source_of_normals_is_made() {
+    assert_variants::<NormalsPipeline>(vec![NormalSource::Depth, NormalSource::Ellipsoids]);
+}
+
+/// Every kind of smoothing with every number of taps; twice over, for the last pass may differ.
+fn smoothings() -> impl Iterator<Item = Smoothing> {
+    (1..=8).flat_map(|half_taps| {
+        let fit = |form| {
+            Smoothing::PlaneFit(PlaneFit {
+                form,
+                half_taps,
+                iterations: 2,
+                ..default()
+            })
+        };
+        [
+            fit(PlaneFitForm::TotalLeastSquares),
+            fit(PlaneFitForm::DeviceDepth),
+            fit(PlaneFitForm::Separable),
+            Smoothing::Bilateral(Bilateral {
+                half_taps,
+                iterations: 2,
+                ..default()
+            }),
+        ]
+    })
+}
+
+#[test]
+fn every_smoothing_is_made() {
+    assert_made(|world| {
+        let (pipeline, cache) = (world.resource(), world.resource());
+        let mut made = SpecializedRenderPipelines::<SmoothPipeline>::default();
+        smoothings()
+            .flat_map(|smoothing| {
+                SmoothSteps::new(&smoothing).pipelines(cache, &mut made, pipeline)
+            })
+            .collect()
+    });
+}
+
+#[test]
+fn every_refraction_is_made() {
+    let classes = [(true, false), (false, true), (true, true)];
+    let bent = pairs(&pairs(&[0, 1, 2, 4], &classes), &pairs(&BOTH, &BOTH));
+    let bent =
+        bent.into_iter().map(
+            |((interfaces, (bulk, spray)), (secant, schlick))| RefractKey {
+                interfaces,
+                bulk,
+                spray,
+                index_one: false,
+                secant,
+                schlick,
+            },
+        );
+    let straight = classes.map(|(bulk, spray)| RefractKey {
+        interfaces: 0,
+        bulk,
+        spray,
+        index_one: true,
+        secant: false,
+        schlick: false,
+    });
+    assert_variants::<RefractPipeline>(bent.chain(straight).collect());
+}
+
+#[test]
+fn every_composite_and_debug_view_is_made() {
+    let views = [
+        None,
+        Some(FluidDebugView::BulkFront),
+        Some(FluidDebugView::BulkBack),
+        Some(FluidDebugView::SprayFront),
+        Some(FluidDebugView::SprayBack),
+        Some(FluidDebugView::Normals),
+        Some(FluidDebugView::Interfaces),
+        Some(FluidDebugView::Status),
+        Some(FluidDebugView::Classes),
+    ];
+    let formats = [TextureFormat::Rgba16Float, TextureFormat::Rgba8UnormSrgb];
+    let keys = pairs(&pairs(&views, &formats), &[1, 4]);
+    let keys = keys
+        .into_iter()
+        .map(|((debug_view, format), samples)| CompositeKey {
+            debug_view,
+            format,
+            samples,
+        });
+    assert_variants::<CompositePipeline>(keys.collect());
+}

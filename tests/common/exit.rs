@@ -49,6 +49,6 @@ fn halves(word: u32) -> [u16; 2] {
 }
 
 /// The status in the lowest four bits.
-pub(crate) fn status(bits: u32) -> SearchStatus {
+fn status(bits: u32) -> SearchStatus {
     SearchStatus::ALL[(bits & 15) as usize]
 }

@@ -9,7 +9,7 @@ pub(crate) mod geometry;
 pub(crate) mod oracle;
 
 use bevy::{
-    camera::{ScalingMode, Viewport},
+    camera::{Hdr, ScalingMode},
     core_pipeline::tonemapping::Tonemapping,
     prelude::*,
     render::{RenderApp, render_resource::Texture},
@@ -23,7 +23,7 @@ use fluid_stage::{TextureData, headless_app, read_texture};
 
 pub(crate) use fluid_stage::settle;
 
-pub(crate) use exit::{Exit, status};
+pub(crate) use exit::Exit;
 pub(crate) use geometry::{Ellipsoid, Ray, angle, decode_normal};
 pub(crate) use oracle::{Random, lattice};
 
@@ -113,7 +113,7 @@ impl View {
                 clear_color: ClearColorConfig::Custom(Color::BLACK),
                 ..default()
             },
-            bevy::camera::Hdr,
+            Hdr,
             Msaa::Off,
             Tonemapping::None,
             self.projection(),

@@ -3,15 +3,19 @@
 
 #import bevy_fluid::render::bindings::view
 #import bevy_fluid::render::functions::{
-    depth_map, encode_normal, has_back, has_front, ndc_from_pixel, normal_from_slope, view_depth,
+    encode_normal, has_back, has_front, ndc_from_pixel, normal_from_slope,
 }
+#import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
 
 @group(1) @binding(0) var layers: texture_2d<f32>;
 
 fn value_at(pixel: vec2<i32>) -> vec2<f32> {
     let low = vec2<i32>(view.main_pass_viewport.xy);
-    let high = low + vec2<i32>(view.main_pass_viewport.zw) - 1;
-    return textureLoad(layers, clamp(pixel, low, high), 0).xy;
+    let high = low + vec2<i32>(view.main_pass_viewport.zw);
+    if any(pixel < low) || any(pixel >= high) {
+        return vec2(NO_FRONT, NO_BACK);
+    }
+    return textureLoad(layers, pixel, 0).xy;
 }
 
 fn there(value: vec2<f32>) -> vec2<bool> {
