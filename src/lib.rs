@@ -51,8 +51,8 @@ pub use crate::{
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
-        Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid,
-        Search, Smoothing, Window,
+        Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NarrowRange, NormalAverage, PlaneFit,
+        PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, Window,
     },
     shape::SurfaceKernel,
 };

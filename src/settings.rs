@@ -53,6 +53,18 @@ impl ScreenSpaceFluid {
     };
 }
 
+impl ScreenSpaceFluid {
+    /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
+    /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
+    pub const EARLIER: Self = Self {
+        smoothing: Smoothing::Bilateral(Bilateral::THESIS),
+        refractions: Refractions::Two,
+        search: Search::Secant,
+        fresnel: Fresnel::Schlick,
+        contact: 0.0,
+    };
+}
+
 impl Default for ScreenSpaceFluid {
     fn default() -> Self {
         Self::DEFAULT
@@ -133,6 +145,12 @@ pub enum Smoothing {
     PlaneFit(PlaneFit),
     /// A bilateral filter of view depth (thesis 3.2, the earlier method).
     Bilateral(Bilateral),
+    /// Normals are averaged, depth is left alone (Takahashi & Doi).
+    NormalAverage(NormalAverage),
+    /// The narrow-range filter (Truong & Yuksel 2018).
+    NarrowRange(NarrowRange),
+    /// Curvature flow (van der Laan, Green & Sainz 2009).
+    CurvatureFlow(CurvatureFlow),
 }
 
 impl Default for Smoothing {
@@ -239,6 +257,74 @@ impl Bilateral {
 impl Default for Bilateral {
     fn default() -> Self {
         Self::THESIS
+    }
+}
+
+/// The mean of the splats' normals over a window (Takahashi & Doi).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct NormalAverage {
+    /// Taps to each side of the centre. Range 1..=8, default 4.
+    pub half_taps: u32,
+    /// How large the window is. Default 0.65 radii.
+    pub window: Window,
+}
+
+impl Default for NormalAverage {
+    fn default() -> Self {
+        Self {
+            half_taps: 4,
+            window: Window::Radii(0.65),
+        }
+    }
+}
+
+/// The narrow-range filter, along rows and columns in turn (Truong & Yuksel 2018).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct NarrowRange {
+    /// Taps to each side of the centre. Range 1..=8, default 6.
+    pub half_taps: u32,
+    /// How often rows and columns are filtered. Range 1..=8, default 3.
+    pub iterations: u32,
+    /// How large the window is. Default 1.5 radii.
+    pub window: Window,
+    /// δ, the depth difference that belongs to the surface. Unit: particle radii, range 1..=20,
+    /// default 10 as published.
+    pub range: f32,
+}
+
+impl Default for NarrowRange {
+    fn default() -> Self {
+        Self {
+            half_taps: 6,
+            iterations: 3,
+            window: Window::Radii(1.5),
+            range: 10.0,
+        }
+    }
+}
+
+/// Explicit steps of mean curvature flow (van der Laan, Green & Sainz 2009).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct CurvatureFlow {
+    /// Number of steps. Range 1..=200, default 60.
+    pub iterations: u32,
+    /// Time step. Unit: pixels squared, range 0.01..=0.5, default 0.4. Larger: smoother; explicit
+    /// steps ring beyond 0.5.
+    pub step: f32,
+    /// Depth differences beyond this are edges. Unit: particle radii, range 0.5..=8, default 3.
+    pub range: f32,
+}
+
+impl Default for CurvatureFlow {
+    fn default() -> Self {
+        Self {
+            iterations: 60,
+            step: 0.4,
+            range: 3.0,
+        }
     }
 }
 

@@ -351,3 +351,26 @@ fn an_opaque_thing_in_the_liquid_ends_the_path() {
     let exit = Exit::at(&PARALLEL, &read(&app, Layers::exits), beside.x, beside.y).unwrap();
     assert_eq!((exit.searches[0], exit.interfaces), (SearchStatus::Hit, 2));
 }
+
+#[test]
+fn from_the_middle_of_a_sphere_rays_leave_unbent() {
+    let app = show(&PERSPECTIVE, TRACED, |world| {
+        world.spawn(fluid(&[Vec3::ZERO], 1.0, SPRAY));
+    });
+    let transmission = read(&app, Layers::transmission);
+    let exits = exits(&PERSPECTIVE, &app);
+    assert_eq!(exits.len() as u32, PERSPECTIVE.size.element_product());
+    for (pixel, ray, exit) in exits {
+        assert_eq!(
+            (exit.interfaces, exit.searches[0]),
+            (1, SearchStatus::Hit),
+            "{pixel}"
+        );
+        // A normal of two halves is off by up to 0.05°, and so is the ray, by a third of it.
+        let bent = angle(exit.direction, ray.direction);
+        assert!(bent < 0.05, "{pixel}: {bent}°");
+        let passed = rgb(&transmission, pixel).x;
+        let wanted = 1.0 - exact(0.0, 0.0);
+        assert!((passed - wanted).abs() < 2.0 * HALF, "{pixel}: {passed}");
+    }
+}

@@ -69,6 +69,9 @@ pub(crate) enum SmoothingArg {
     PlaneFit,
     PlaneFitSeparable,
     Bilateral,
+    NormalAverage,
+    NarrowRange,
+    CurvatureFlow,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -128,6 +131,9 @@ impl Args {
                 SmoothingArg::PlaneFit => plane(PlaneFitForm::DeviceDepth),
                 SmoothingArg::PlaneFitSeparable => plane(PlaneFitForm::Separable),
                 SmoothingArg::Bilateral => Smoothing::Bilateral(Bilateral::THESIS),
+                SmoothingArg::NormalAverage => Smoothing::NormalAverage(default()),
+                SmoothingArg::NarrowRange => Smoothing::NarrowRange(default()),
+                SmoothingArg::CurvatureFlow => Smoothing::CurvatureFlow(default()),
             },
             refractions: match self.refractions.as_str() {
                 "0" => Refractions::Zero,

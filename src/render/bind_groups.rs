@@ -89,8 +89,13 @@ pub(crate) fn prepare_body_bind_groups(
                 &sources.smooth,
                 &body.layers,
             );
-            body.groups.bulk_normals = Some(sources.layer(body.layers.bulk_view()));
-            body.groups.spray_normals = Some(sources.layer(&body.layers.spray.default_view));
+            body.groups.bulk_layers = Some(sources.layer(body.layers.bulk_view()));
+            body.groups.splat_normals = body
+                .layers
+                .splat_normals
+                .as_ref()
+                .map(|normals| sources.layer(&normals.default_view));
+            body.groups.spray_layers = Some(sources.layer(&body.layers.spray.default_view));
             body.groups.refract = Some(sources.refract(body));
             body.groups.composite = match &scene_color {
                 Some(color) => Some(sources.composite(body, color)),

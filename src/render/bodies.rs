@@ -25,7 +25,7 @@ use super::{
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
     gpu_types::{GpuBody, GpuFluid},
     layers::Layers,
-    normals::{NormalSource, NormalsPipeline},
+    normals::{BulkNormals, NormalSource, NormalsPipeline},
     plan::{Plan, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
     scene_depth::SCENE_DEPTH_FORMAT,
@@ -69,7 +69,7 @@ pub(crate) struct BodyFluid {
 pub(crate) struct BodyPipelines {
     pub(crate) splat: SplatPipelines,
     pub(crate) smooth: Vec<CachedRenderPipelineId>,
-    pub(crate) bulk_normals: Option<CachedRenderPipelineId>,
+    pub(crate) bulk_normals: BulkNormals,
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
     pub(crate) refract: CachedRenderPipelineId,
     pub(crate) composite: CachedRenderPipelineId,
@@ -84,7 +84,7 @@ impl BodyPipelines {
         splat
             .iter()
             .chain(&self.smooth)
-            .chain(&self.bulk_normals)
+            .chain(self.bulk_normals.pipelines())
             .chain(&self.spray_normals)
             .chain([&self.refract, &self.composite])
             .all(|&id| cache.get_render_pipeline(id).is_some())
@@ -96,8 +96,9 @@ pub(crate) struct BodyGroups {
     pub(crate) common: Option<BindGroup>,
     pub(crate) merge: Option<BindGroup>,
     pub(crate) smooth: Vec<BindGroup>,
-    pub(crate) bulk_normals: Option<BindGroup>,
-    pub(crate) spray_normals: Option<BindGroup>,
+    pub(crate) bulk_layers: Option<BindGroup>,
+    pub(crate) splat_normals: Option<BindGroup>,
+    pub(crate) spray_layers: Option<BindGroup>,
     pub(crate) refract: Option<BindGroup>,
     pub(crate) composite: Option<BindGroup>,
 }
@@ -190,7 +191,16 @@ impl Pipelines<'_> {
                 merge: self.splat.merge,
             }
         };
-        let depth_normals = plan.bulk && !steps.yields_normals();
+        let bulk_normals = match plan.smoothing {
+            _ if !plan.bulk || steps.yields_normals() => BulkNormals::Smoothed,
+            Smoothing::NormalAverage(average) => BulkNormals::Averaged {
+                splats: self.normals(NormalSource::Ellipsoids),
+                average: self.normals(NormalSource::Average {
+                    half_taps: average.half_taps.clamp(1, 8),
+                }),
+            },
+            _ => BulkNormals::Depth(self.normals(NormalSource::Depth)),
+        };
         let refract = RefractKey {
             interfaces: plan.interfaces,
             bulk: plan.bulk,
@@ -202,7 +212,7 @@ impl Pipelines<'_> {
         BodyPipelines {
             splat,
             smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
-            bulk_normals: depth_normals.then(|| self.normals(NormalSource::Depth)),
+            bulk_normals,
             spray_normals: plan.spray.then(|| self.normals(NormalSource::Ellipsoids)),
             refract: self
                 .refracts
@@ -412,6 +422,9 @@ fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
         .is_some_and(|image| image.texture.depth_or_array_layers() == 6)
 }
 
+/// For methods that know no bound.
+const UNBOUND: f32 = 1e6;
+
 fn gpu_body(
     material: &FluidMaterial,
     radius: f32,
@@ -419,22 +432,29 @@ fn gpu_body(
     plan: &Plan,
     lights: &FluidLights,
 ) -> GpuBody {
-    let (window, range, bound) = match plan.smoothing {
-        Smoothing::None => (0.0, 1.0, 0.0),
-        Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
-        // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²), and the published filter knows no bound.
-        Smoothing::Bilateral(filter) => (
-            window_radii(filter.window),
-            filter.range * core::f32::consts::SQRT_2,
-            1e6,
-        ),
-    };
     let positive = |value: f32, fallback: f32| {
         if value.is_finite() && value > 0.0 {
             value
         } else {
             fallback
         }
+    };
+    let (window, range, bound) = match plan.smoothing {
+        Smoothing::None => (0.0, 1.0, 0.0),
+        Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
+        // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²).
+        Smoothing::Bilateral(filter) => (
+            window_radii(filter.window),
+            filter.range * core::f32::consts::SQRT_2,
+            UNBOUND,
+        ),
+        Smoothing::NormalAverage(average) => (window_radii(average.window), 1.0, UNBOUND),
+        Smoothing::NarrowRange(filter) => (window_radii(filter.window), filter.range, UNBOUND),
+        Smoothing::CurvatureFlow(flow) => (0.0, flow.range, UNBOUND),
+    };
+    let flow_step = match plan.smoothing {
+        Smoothing::CurvatureFlow(flow) => positive(flow.step, 0.0).min(0.5),
+        _ => 0.0,
     };
     GpuBody {
         extinction: material.medium.extinction(),
@@ -446,6 +466,7 @@ fn gpu_body(
         window_radii: window,
         range: positive(range, 2.0) * radius,
         bound: positive(bound, 2.0) * radius,
+        flow_step,
         coarse_samples: match settings.search {
             Search::Secant => 0,
             Search::Bracketed { coarse_samples } => coarse_samples.min(32),

@@ -33,6 +33,7 @@ pub(crate) struct GpuBody {
     pub(crate) window_radii: f32,
     pub(crate) range: f32,
     pub(crate) bound: f32,
+    pub(crate) flow_step: f32,
     pub(crate) coarse_samples: u32,
     pub(crate) contact: f32,
 }

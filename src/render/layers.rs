@@ -16,6 +16,8 @@ use super::{
     support::{FluidSupport, LAYER_FORMAT},
 };
 
+use crate::settings::Smoothing;
+
 /// Front and back normals, octahedral, both towards the viewer.
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// Radiance and transmission.
@@ -38,6 +40,8 @@ pub struct Layers {
     pub(crate) smoothed: usize,
     pub(crate) slopes: Option<CachedTexture>,
     pub(crate) bulk_normals: CachedTexture,
+    /// The bulk's normals before they are averaged.
+    pub(crate) splat_normals: Option<CachedTexture>,
     pub(crate) spray: CachedTexture,
     pub(crate) spray_normals: CachedTexture,
     pub(crate) radiance: CachedTexture,
@@ -82,6 +86,8 @@ impl Layers {
                 .needs_slopes()
                 .then(|| texture("fluid_bulk_slopes", SLOPE_FORMAT)),
             bulk_normals,
+            splat_normals: matches!(plan.smoothing, Smoothing::NormalAverage(_))
+                .then(|| texture("fluid_bulk_splat_normals", NORMAL_FORMAT)),
             spray,
             spray_normals,
             radiance: texture("fluid_radiance", LIGHT_FORMAT),

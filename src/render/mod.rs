@@ -69,8 +69,11 @@ impl Plugin for FluidRenderPlugin {
         embedded_asset!(app, "smooth/plane_fit.wgsl");
         embedded_asset!(app, "smooth/plane_fit_tls.wgsl");
         embedded_asset!(app, "smooth/bilateral.wgsl");
+        embedded_asset!(app, "smooth/narrow_range.wgsl");
+        embedded_asset!(app, "smooth/curvature_flow.wgsl");
+        embedded_asset!(app, "normals/average_normals.wgsl");
         embedded_asset!(app, "normals/depth_normals.wgsl");
-        embedded_asset!(app, "normals/spray_normals.wgsl");
+        embedded_asset!(app, "normals/splat_normals.wgsl");
         embedded_asset!(app, "refract/refract.wgsl");
         embedded_asset!(app, "composite/composite.wgsl");
         embedded_asset!(app, "composite/debug_view.wgsl");

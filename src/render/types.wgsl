@@ -43,6 +43,8 @@ struct GpuBody {
     range: f32,
     // Smoothing: largest shift in depth, world units.
     bound: f32,
+    // Curvature flow: time step, pixels squared.
+    flow_step: f32,
     // Search: evenly spaced samples before the bracket.
     coarse_samples: u32,
     // Search: how far behind the liquid an opaque surface is wetted, world units.

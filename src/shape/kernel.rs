@@ -75,21 +75,32 @@ pub struct SurfaceKernel {
 
 impl Default for SurfaceKernel {
     fn default() -> Self {
-        Self {
-            neighbor_radius: 4.0,
-            spray_threshold: 8,
-            anisotropic: true,
-            center_shift: 0.9,
-            max_ratio: 4.0,
-            radius_scale: 1.24,
-            sphere_neighbors: 8,
-            full_neighbors: 16,
-            skip_interior: true,
-        }
+        Self::DEFAULT
     }
 }
 
 impl SurfaceKernel {
+    /// The default.
+    pub const DEFAULT: Self = Self {
+        neighbor_radius: 4.0,
+        spray_threshold: 8,
+        anisotropic: true,
+        center_shift: 0.9,
+        max_ratio: 4.0,
+        radius_scale: 1.24,
+        sphere_neighbors: 8,
+        full_neighbors: 16,
+        skip_interior: true,
+    };
+
+    /// As before anisotropic kernels: spheres of one class, all of them drawn (thesis 3).
+    pub const EARLIER: Self = Self {
+        spray_threshold: 0,
+        anisotropic: false,
+        skip_interior: false,
+        ..Self::DEFAULT
+    };
+
     /// Checks every field against its documented range.
     ///
     /// # Errors

@@ -14,13 +14,14 @@ use bevy::{
             SpecializedRenderPipeline, TextureView, VertexState,
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
+        texture::CachedTexture,
     },
-    shader::Shader,
+    shader::{Shader, ShaderDefVal},
 };
 
 use super::{
     bindings::{MAX_BLEND, cleared, common_layout, fragment, one_texture_layout},
-    bodies::ViewBodies,
+    bodies::{Body, ViewBodies},
     extract::GpuSplats,
     layers::NORMAL_FORMAT,
     splat::{Class, SPLAT_QUAD, SplatPipeline, draw_splats},
@@ -33,6 +34,31 @@ pub(crate) enum NormalSource {
     Depth,
     /// The ellipsoids that made the layer.
     Ellipsoids,
+    /// The mean of other normals.
+    Average { half_taps: u32 },
+}
+
+/// How the bulk gets its normals.
+#[derive(Clone, Copy)]
+pub(crate) enum BulkNormals {
+    /// Smoothing has written them.
+    Smoothed,
+    Depth(CachedRenderPipelineId),
+    Averaged {
+        splats: CachedRenderPipelineId,
+        average: CachedRenderPipelineId,
+    },
+}
+
+impl BulkNormals {
+    pub(crate) fn pipelines(&self) -> impl Iterator<Item = &CachedRenderPipelineId> {
+        let (first, second) = match self {
+            Self::Smoothed => (None, None),
+            Self::Depth(pipeline) => (Some(pipeline), None),
+            Self::Averaged { splats, average } => (Some(splats), Some(average)),
+        };
+        first.into_iter().chain(second)
+    }
 }
 
 #[derive(Resource)]
@@ -41,7 +67,8 @@ pub(crate) struct NormalsPipeline {
     layout: BindGroupLayoutDescriptor,
     fluid_layout: BindGroupLayoutDescriptor,
     depth_normals: Handle<Shader>,
-    spray_normals: Handle<Shader>,
+    splat_normals: Handle<Shader>,
+    average_normals: Handle<Shader>,
 }
 
 pub(crate) fn init_normals_pipeline(
@@ -55,7 +82,8 @@ pub(crate) fn init_normals_pipeline(
         layout: one_texture_layout("fluid_normals_layout"),
         fluid_layout: splat.fluid_layout.clone(),
         depth_normals: load_embedded_asset!(assets.as_ref(), "depth_normals.wgsl"),
-        spray_normals: load_embedded_asset!(assets.as_ref(), "spray_normals.wgsl"),
+        splat_normals: load_embedded_asset!(assets.as_ref(), "splat_normals.wgsl"),
+        average_normals: load_embedded_asset!(assets.as_ref(), "average_normals.wgsl"),
     });
 }
 
@@ -90,11 +118,23 @@ impl SpecializedRenderPipeline for NormalsPipeline {
                 )),
                 ..default()
             },
+            NormalSource::Average { half_taps } => RenderPipelineDescriptor {
+                label: Some("fluid_average_normals_pipeline".into()),
+                layout: vec![common, self.layout.clone(), self.layout.clone()],
+                vertex: self.fullscreen.clone(),
+                fragment: Some(fragment(
+                    &self.average_normals,
+                    vec![ShaderDefVal::Int("HALF_TAPS".into(), half_taps as i32)],
+                    &[NORMAL_FORMAT],
+                    None,
+                )),
+                ..default()
+            },
             NormalSource::Ellipsoids => RenderPipelineDescriptor {
-                label: Some("fluid_spray_normals_pipeline".into()),
+                label: Some("fluid_splat_normals_pipeline".into()),
                 layout: vec![common, self.fluid_layout.clone(), self.layout.clone()],
                 vertex: VertexState {
-                    shader: self.spray_normals.clone(),
+                    shader: self.splat_normals.clone(),
                     shader_defs: shader_defs.clone(),
                     entry_point: Some("vertex".into()),
                     buffers: vec![],
@@ -102,7 +142,7 @@ impl SpecializedRenderPipeline for NormalsPipeline {
                 primitive: SPLAT_QUAD,
                 // Two ellipsoids that made the same pixel: either normal will do.
                 fragment: Some(fragment(
-                    &self.spray_normals,
+                    &self.splat_normals,
                     shader_defs,
                     &[NORMAL_FORMAT],
                     Some(MAX_BLEND),
@@ -130,46 +170,91 @@ pub(crate) fn normals(
     let recorder = recorder.as_deref();
     let span = recorder.time_span(ctx.command_encoder(), "fluid_normals");
     for body in bodies.ready() {
-        let pipeline = |id: Option<CachedRenderPipelineId>| cache.get_render_pipeline(id?);
-        if let (Some(pipeline), Some(group)) = (
-            pipeline(body.pipelines.bulk_normals),
-            &body.groups.bulk_normals,
-        ) {
-            let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-                label: Some("fluid_depth_normals"),
-                color_attachments: &[Some(cleared(
-                    &body.layers.bulk_normals.default_view,
-                    [0.0; 4],
-                ))],
-                ..default()
-            });
-            body.set_scissor(&mut pass);
-            pass.set_render_pipeline(pipeline);
-            body.set_common(&mut pass);
-            pass.set_bind_group(1, group, &[]);
-            pass.draw(0..3, 0..1);
-        }
-        if let (Some(pipeline), Some(group)) = (
-            pipeline(body.pipelines.spray_normals),
-            &body.groups.spray_normals,
-        ) {
-            let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-                label: Some("fluid_spray_normals"),
-                color_attachments: &[Some(cleared(
-                    &body.layers.spray_normals.default_view,
-                    [-2.0; 4],
-                ))],
-                ..default()
-            });
-            if let Some(viewport) = &viewport {
-                pass.set_camera_viewport(viewport);
+        let (layers, groups) = (&body.layers, &body.groups);
+        let mut draw = NormalsDraw {
+            body,
+            viewport: viewport.as_ref(),
+            cache: &cache,
+            ctx: &mut ctx,
+        };
+        match body.pipelines.bulk_normals {
+            BulkNormals::Smoothed => {}
+            BulkNormals::Depth(pipeline) => {
+                draw.fullscreen(pipeline, &layers.bulk_normals, [&groups.bulk_layers, &None]);
             }
-            body.set_scissor(&mut pass);
-            pass.set_render_pipeline(pipeline);
-            body.set_common(&mut pass);
-            pass.set_bind_group(2, group, &[]);
-            draw_splats(&mut pass, body, Class::Spray, &fluids);
+            BulkNormals::Averaged { splats, average } => {
+                if let Some(target) = &layers.splat_normals {
+                    draw.splats(splats, target, &groups.bulk_layers, Class::Bulk, &fluids);
+                    let inputs = [&groups.bulk_layers, &groups.splat_normals];
+                    draw.fullscreen(average, &layers.bulk_normals, inputs);
+                }
+            }
+        }
+        if let Some(pipeline) = body.pipelines.spray_normals {
+            let (target, input) = (&layers.spray_normals, &groups.spray_layers);
+            draw.splats(pipeline, target, input, Class::Spray, &fluids);
         }
     }
     span.end(ctx.command_encoder());
+}
+
+struct NormalsDraw<'a, 'w, 's> {
+    body: &'a Body,
+    viewport: Option<&'a Viewport>,
+    cache: &'a PipelineCache,
+    ctx: &'a mut RenderContext<'w, 's>,
+}
+
+impl NormalsDraw<'_, '_, '_> {
+    /// A pass over all pixels, with up to two inputs.
+    fn fullscreen(
+        &mut self,
+        pipeline: CachedRenderPipelineId,
+        target: &CachedTexture,
+        inputs: [&Option<BindGroup>; 2],
+    ) {
+        let Some(pipeline) = self.cache.get_render_pipeline(pipeline) else {
+            return;
+        };
+        let mut pass = self.ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("fluid_normals"),
+            color_attachments: &[Some(cleared(&target.default_view, [0.0; 4]))],
+            ..default()
+        });
+        self.body.set_scissor(&mut pass);
+        pass.set_render_pipeline(pipeline);
+        self.body.set_common(&mut pass);
+        for (group, index) in inputs.into_iter().flatten().zip(1..) {
+            pass.set_bind_group(index, group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
+
+    /// The splats of a class once more, over their layers.
+    fn splats(
+        &mut self,
+        pipeline: CachedRenderPipelineId,
+        target: &CachedTexture,
+        layers: &Option<BindGroup>,
+        class: Class,
+        fluids: &Query<&GpuSplats>,
+    ) {
+        let (Some(pipeline), Some(group)) = (self.cache.get_render_pipeline(pipeline), layers)
+        else {
+            return;
+        };
+        let mut pass = self.ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("fluid_splat_normals"),
+            color_attachments: &[Some(cleared(&target.default_view, [-2.0; 4]))],
+            ..default()
+        });
+        if let Some(viewport) = self.viewport {
+            pass.set_camera_viewport(viewport);
+        }
+        self.body.set_scissor(&mut pass);
+        pass.set_render_pipeline(pipeline);
+        self.body.set_common(&mut pass);
+        pass.set_bind_group(2, group, &[]);
+        draw_splats(&mut pass, self.body, class, fluids);
+    }
 }

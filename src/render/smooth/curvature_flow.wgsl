@@ -9,7 +9,7 @@
 
 // View depths beside the centre; across a step or a silhouette the surface goes on level.
 fn depth_at(window: Window, offset: vec2<i32>) -> vec2<f32> {
-    let value = raw_tap_at(window, offset, 1.0);
+    let value = raw_tap_at(window, offset);
     let z = view_depths(window.map, value.xy);
     let same = valid_layers(value.xy) & abs(z - window.depth) <= vec2(body.range);
     return select(window.depth, z, same);
@@ -44,9 +44,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let ex = 0.5 * zx * dx - zxx * d;
     let ey = 0.5 * zy * dy - zyy * d;
     let h = (c.y * ex + c.x * ey) / (2.0 * max(d, vec2(1e-30)) * sqrt(max(d, vec2(1e-30))));
-    // The step is bounded by a fraction of a particle, as the flow is explicit.
-    let most = vec2(0.1 * body.radius);
-    let moved = z - clamp(h * body.flow_step, -most, most);
+    // The paper's curvature is taken by the pixel: per metre it is h over the pixel's footprint,
+    // and the steps are in units of that footprint squared, where an explicit flow is stable.
+    let moved = z - body.flow_step * h * 0.5 * (c.x + c.y) * z;
     let fitted = vec2(device_depth(window.map, moved.x), -device_depth(window.map, moved.y));
     return vec4(accept(window, fitted, vec2(true)), 0.0, 0.0);
 }

@@ -32,6 +32,9 @@ pub(crate) enum SmoothKernel {
     Rows,
     Columns,
     Bilateral,
+    NarrowRows,
+    NarrowColumns,
+    CurvatureFlow,
 }
 
 /// Where a pass writes.
@@ -58,6 +61,8 @@ pub(crate) struct SmoothPipeline {
     plane_fit: Handle<Shader>,
     plane_fit_tls: Handle<Shader>,
     bilateral: Handle<Shader>,
+    narrow_range: Handle<Shader>,
+    curvature_flow: Handle<Shader>,
 }
 
 pub(crate) fn init_smooth_pipeline(
@@ -71,6 +76,8 @@ pub(crate) fn init_smooth_pipeline(
         plane_fit: load_embedded_asset!(assets.as_ref(), "plane_fit.wgsl"),
         plane_fit_tls: load_embedded_asset!(assets.as_ref(), "plane_fit_tls.wgsl"),
         bilateral: load_embedded_asset!(assets.as_ref(), "bilateral.wgsl"),
+        narrow_range: load_embedded_asset!(assets.as_ref(), "narrow_range.wgsl"),
+        curvature_flow: load_embedded_asset!(assets.as_ref(), "curvature_flow.wgsl"),
     });
 }
 
@@ -84,15 +91,19 @@ impl SpecializedRenderPipeline for SmoothPipeline {
         ]);
         shader_defs.push(ShaderDefVal::Int("HALF_TAPS".into(), key.half_taps as i32));
         let line = match key.kernel {
-            SmoothKernel::Rows => Some(0),
-            SmoothKernel::Columns => Some(1),
+            SmoothKernel::Rows | SmoothKernel::NarrowRows => Some(0),
+            SmoothKernel::Columns | SmoothKernel::NarrowColumns => Some(1),
             _ => None,
         };
         shader_defs.extend(line.map(|line| ShaderDefVal::Int("LINE".into(), line)));
         let shader = match key.kernel {
             SmoothKernel::TotalLeastSquares => &self.plane_fit_tls,
             SmoothKernel::Bilateral => &self.bilateral,
-            _ => &self.plane_fit,
+            SmoothKernel::NarrowRows | SmoothKernel::NarrowColumns => &self.narrow_range,
+            SmoothKernel::CurvatureFlow => &self.curvature_flow,
+            SmoothKernel::DeviceDepth | SmoothKernel::Rows | SmoothKernel::Columns => {
+                &self.plane_fit
+            }
         };
         let formats: &[_] = match key.target {
             SmoothTarget::Layers => &[LAYER_FORMAT],
@@ -135,7 +146,8 @@ pub(crate) struct SmoothSteps {
 impl SmoothSteps {
     pub(crate) fn new(smoothing: &Smoothing) -> Self {
         let (kernels, half_taps, iterations, normals): (&[_], _, _, _) = match smoothing {
-            Smoothing::None => return Self::default(),
+            // Averaging normals leaves the layers as they are.
+            Smoothing::None | Smoothing::NormalAverage(_) => return Self::default(),
             Smoothing::PlaneFit(fit) => (
                 match fit.form {
                     PlaneFitForm::TotalLeastSquares => &[SmoothKernel::TotalLeastSquares],
@@ -150,6 +162,18 @@ impl SmoothSteps {
                 &[SmoothKernel::Bilateral],
                 filter.half_taps,
                 filter.iterations.clamp(1, 64),
+                false,
+            ),
+            Smoothing::NarrowRange(filter) => (
+                &[SmoothKernel::NarrowRows, SmoothKernel::NarrowColumns],
+                filter.half_taps,
+                filter.iterations.clamp(1, 8),
+                false,
+            ),
+            Smoothing::CurvatureFlow(flow) => (
+                &[SmoothKernel::CurvatureFlow],
+                1,
+                flow.iterations.clamp(1, 200),
                 false,
             ),
         };

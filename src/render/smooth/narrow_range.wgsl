@@ -32,7 +32,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let edge = edge_weight(window, i) * exp(-falloff * f32(i * i));
         for (var side = -1; side <= 1; side += 2) {
             let offset = select(vec2(side * i, 0), vec2(0, side * i), #{LINE} == 1);
-            let value = raw_tap_at(window, offset, edge);
+            let value = raw_tap_at(window, offset);
             let there = window.valid & valid_layers(value.xy);
             let away = towards * (view_depths(window.map, value.xy) - window.depth);
             let near_ok = away >= -range.nearer;

@@ -6,7 +6,7 @@
     DepthMap, depth_map, depth_slope, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
     view_from_device,
 }
-#import bevy_fluid::render::types::INSIDE_FRONT
+#import bevy_fluid::render::types::{INSIDE_FRONT, NO_BACK, NO_FRONT}
 
 @group(1) @binding(0) var layers: texture_2d<f32>;
 
@@ -70,15 +70,23 @@ fn edge_weight(window: Window, tap: i32) -> f32 {
     return clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
 }
 
-fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
+// A tap's values, nothing outside of the viewport.
+fn raw_tap_at(window: Window, offset: vec2<i32>) -> vec4<f32> {
     let pixel = window.pixel + offset * window.spacing;
     let low = vec2<i32>(view.main_pass_viewport.xy);
     let high = low + vec2<i32>(view.main_pass_viewport.zw);
+    if any(pixel < low) || any(pixel >= high) {
+        return vec4(NO_FRONT, NO_BACK, 0.0, 0.0);
+    }
+    return textureLoad(layers, pixel, 0);
+}
+
+fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
     var out: Tap;
-    if edge <= 0.0 || any(pixel < low) || any(pixel >= high) {
+    if edge <= 0.0 {
         return out;
     }
-    out.value = textureLoad(layers, pixel, 0);
+    out.value = raw_tap_at(window, offset);
     // To first order: where it matters, taps are near.
     let apart = (out.value.xy - window.center.xy) * window.steepness;
     let weight = edge * exp(-apart * apart);

@@ -15,6 +15,7 @@ pub use half_space::HalfSpace;
 pub use pool::{RippledPool, Wave};
 pub use sphere::Sphere;
 pub use union::Union;
+pub(crate) use union::keep_outermost;
 
 /// A point where a ray goes through a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

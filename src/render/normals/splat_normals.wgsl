@@ -1,4 +1,4 @@
-// Normals of the spray, from the ellipsoids themselves: drawn once more over finished layers,
+// Normals from the ellipsoids themselves, as spray wants them: drawn once more over finished layers,
 // where only the ellipsoid that made a layer leaves its normal.
 
 #import bevy_fluid::render::functions::encode_normal
