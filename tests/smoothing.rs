@@ -242,3 +242,31 @@ fn bumps_are_smoothed_away() {
         }
     }
 }
+
+/// The peers smooth too, each in its way: narrow range and curvature flow the depth and with it
+/// the normals, the average the normals alone. How well is for the measurements to say.
+#[test]
+fn the_peers_halve_the_normals_error() {
+    let view = View::new(128, PARALLEL.lens);
+    let mut app = show(&view, RAW, |_| {});
+    pour(&mut app, bumpy_slab(0.05, Quat::IDENTITY));
+    look(&mut app, RAW);
+    let (raw, raw_normal) = bumpiness(&view, &app, DVec3::Z);
+    for (smoothing, moves_depth) in [
+        (Smoothing::NormalAverage(default()), false),
+        (Smoothing::NarrowRange(default()), true),
+        (Smoothing::CurvatureFlow(default()), true),
+    ] {
+        look(&mut app, ScreenSpaceFluid { smoothing, ..RAW });
+        let (smooth, error) = bumpiness(&view, &app, DVec3::Z);
+        assert!(
+            error < 0.5 * raw_normal,
+            "{smoothing:?}: {raw_normal}° to {error}°"
+        );
+        if moves_depth {
+            assert!(smooth < 0.5 * raw, "{smoothing:?}: {raw} m to {smooth} m");
+        } else {
+            assert_eq!(smooth, raw);
+        }
+    }
+}

@@ -15,7 +15,7 @@ fn viewer() -> Command {
     let program = release.join("examples/viewer");
     assert!(
         program.exists(),
-        "{} is not built: run `cargo test` for all targets, or with `--example viewer`",
+        "{} is not built: run `cargo test` for all targets, or build the example first",
         program.display()
     );
     let mut command = Command::new(program);

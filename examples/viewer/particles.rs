@@ -26,9 +26,15 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<Vec3>> {
     }
     let points = quietly(|| splashsurf_lib::io::particles_from_file::<f32, _>(path))
         .ok_or_else(|| anyhow!("{name} is damaged"))?
-        .map_err(|error| anyhow!("{name} is damaged: {}", error.root_cause()))?;
+        .map_err(|error| anyhow!("{name} is damaged: {}", first_line(&error)))?;
     ensure!(!points.is_empty(), "{name} holds no particles");
     Ok(points.iter().map(|p| vec3(p.x, p.y, p.z)).collect())
+}
+
+/// Some readers go on about where they were.
+fn first_line(error: &anyhow::Error) -> String {
+    let cause = error.root_cause().to_string();
+    cause.lines().next().unwrap_or_default().to_owned()
 }
 
 /// The readers check some of their assumptions by panicking; that is an answer too.

@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     FluidPlugin,
-    settings::{Bilateral, FluidDebugView, PlaneFit, PlaneFitForm, Smoothing},
+    settings::{Bilateral, FluidDebugView, NarrowRange, PlaneFit, PlaneFitForm, Smoothing},
 };
 
 const BOTH: [bool; 2] = [false, true];
@@ -72,7 +72,9 @@ fn every_splat_output_is_made() {
 
 #[test]
 fn every_source_of_normals_is_made() {
-    assert_variants::<NormalsPipeline>(vec![NormalSource::Depth, NormalSource::Ellipsoids]);
+    let averages = (1..=8).map(|half_taps| NormalSource::Average { half_taps });
+    let others = [NormalSource::Depth, NormalSource::Ellipsoids];
+    assert_variants::<NormalsPipeline>(averages.chain(others).collect());
 }
 
 /// Every kind of smoothing with every number of taps; twice over, for the last pass may differ.
@@ -95,6 +97,12 @@ fn smoothings() -> impl Iterator<Item = Smoothing> {
                 iterations: 2,
                 ..default()
             }),
+            Smoothing::NarrowRange(NarrowRange {
+                half_taps,
+                iterations: 2,
+                ..default()
+            }),
+            Smoothing::CurvatureFlow(default()),
         ]
     })
 }

@@ -3,6 +3,7 @@
 //! - [`StagePlugins`] stands in for `DefaultPlugins`: a window, or a picture written without one.
 //! - [`headless_app`] with [`settle`], [`step`], [`capture`] and [`read_texture`] is for tests and
 //!   benches: frame by frame, and what the GPU holds afterwards.
+//! - [`simulation`] sets liquids in motion.
 //! - [`scenery`] is what stands around the liquid: floor, pillars, sky, sun, tank and camera.
 //!
 //! ```no_run
@@ -30,6 +31,7 @@ mod pipelines;
 mod plugins;
 mod read;
 pub mod scenery;
+pub mod simulation;
 mod stage;
 mod texels;
 mod timing;

@@ -4,16 +4,13 @@
 //! stand behind it. Turn the camera with the mouse; press R to start over. `--out FILE.png
 //! [--frames N]` writes a picture instead.
 
-mod simulation;
-
 use bevy::{math::bounding::Aabb3d, prelude::*};
 use bevy_fluid::prelude::*;
 use fluid_stage::{
     StagePlugins,
     scenery::{Scenery, frame_camera, orbit_camera},
+    simulation::{Simulation, cylinder, dam},
 };
-
-use crate::simulation::DamBreak;
 
 /// Inside of the tank, m.
 const TANK: Vec3 = vec3(2.4, 1.3, 1.0);
@@ -33,14 +30,19 @@ fn main() -> AppExit {
     };
     App::new()
         .add_plugins((stage.with_args(), FluidPlugin::default()))
-        .insert_resource(DamBreak::new(TANK, DAM, RADIUS, PILLAR))
+        .insert_resource(dam_break())
         .add_systems(Startup, setup)
         .add_systems(Update, restart)
         .add_systems(PostUpdate, simulate.in_set(FluidSystems::Simulate))
         .run()
 }
 
-fn setup(mut scenery: Scenery, dam: Res<DamBreak>) {
+fn dam_break() -> Simulation {
+    let pillar = cylinder(PILLAR, TANK.y, RADIUS);
+    Simulation::new(TANK, RADIUS, dam(TANK, DAM, RADIUS), pillar)
+}
+
+fn setup(mut scenery: Scenery, water: Res<Simulation>) {
     let inside = Aabb3d::new(Vec3::Y * 0.5 * TANK.y, 0.5 * TANK);
     scenery.checker_floor(Vec3::ZERO, 5.0, 20);
     scenery.pillars(inside, 5);
@@ -63,7 +65,7 @@ fn setup(mut scenery: Scenery, dam: Res<DamBreak>) {
     );
 
     scenery.commands.spawn((
-        FluidParticles::new(dam.positions(), RADIUS),
+        FluidParticles::new(water.positions(), RADIUS),
         FluidMaterial {
             // A lake's water, so that depth shows in a tank.
             medium: Medium::absorbing(LinearRgba::rgb(0.3, 0.72, 0.8), 1.0),
@@ -88,18 +90,22 @@ fn opaque(scenery: &mut Scenery, shape: impl Into<Mesh>, at: Vec3, color: Color)
     ));
 }
 
-fn simulate(mut dam: ResMut<DamBreak>, mut fluids: Query<&mut FluidParticles>, time: Res<Time>) {
+fn simulate(
+    mut water: ResMut<Simulation>,
+    mut fluids: Query<&mut FluidParticles>,
+    time: Res<Time>,
+) {
     if time.delta_secs() == 0.0 {
         return;
     }
-    dam.step(time.delta_secs());
+    water.step(time.delta_secs());
     for mut fluid in &mut fluids {
-        dam.write_positions(&mut fluid.positions);
+        water.write_positions(&mut fluid.positions);
     }
 }
 
-fn restart(mut dam: ResMut<DamBreak>, keys: Res<ButtonInput<KeyCode>>) {
+fn restart(mut water: ResMut<Simulation>, keys: Res<ButtonInput<KeyCode>>) {
     if keys.just_pressed(KeyCode::KeyR) {
-        *dam = DamBreak::new(TANK, DAM, RADIUS, PILLAR);
+        *water = dam_break();
     }
 }

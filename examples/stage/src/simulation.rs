@@ -1,4 +1,4 @@
-//! The liquid's motion: salva3d's DFSPH between walls of boundary particles.
+//! Liquids in motion: salva3d's DFSPH between walls of boundary particles.
 
 use bevy::prelude::*;
 use salva3d::{
@@ -16,8 +16,9 @@ const SUBSTEPS: u32 = 2;
 /// A slow machine slows the liquid down rather than the program.
 const LONGEST_STEP: f32 = 1.0 / 30.0;
 
+/// A liquid in a tank.
 #[derive(Resource)]
-pub(crate) struct DamBreak {
+pub struct Simulation {
     world: LiquidWorld,
     fluid: FluidHandle,
     /// Where centres of particles may be.
@@ -25,27 +26,19 @@ pub(crate) struct DamBreak {
     high: Vec3,
 }
 
-impl DamBreak {
-    /// A block of water, `dam` wide and high, at the left wall of a `tank` that stands on y = 0
-    /// about the origin, with a pillar (foot, radius) in it.
-    pub(crate) fn new(tank: Vec3, dam: Vec2, radius: f32, pillar: (Vec2, f32)) -> Self {
+impl Simulation {
+    /// Liquid particles of `radius` (m) at rest at `liquid`, in a `tank` (width, height, depth; m)
+    /// that stands on y = 0 about the origin, among `solid` particles.
+    pub fn new(tank: Vec3, radius: f32, liquid: Vec<Vec3>, solid: Vec<Vec3>) -> Self {
         let solver: DFSPHSolver = DFSPHSolver::new();
         let mut world = LiquidWorld::new(solver, radius, SMOOTHING, 1.0);
-        let low = vec3(-0.5 * tank.x, 0.0, -0.5 * tank.z);
-        let block = lattice(
-            low + radius,
-            low + vec3(dam.x, dam.y, tank.z) - radius,
-            2.0 * radius,
-        );
-        let mut fluid = Fluid::new(vectors(block), radius, 1000.0, InteractionGroups::all());
+        let mut fluid = Fluid::new(vectors(liquid), radius, 1000.0, InteractionGroups::all());
         let viscosity = ArtificialViscosity::new(0.5, 0.0);
         fluid.nonpressure_forces.push(Box::new(viscosity));
         let fluid = world.add_fluid(fluid);
-        let solid = walls(tank, radius)
-            .into_iter()
-            .chain(cylinder(pillar, tank.y, radius))
-            .collect();
+        let solid = walls(tank, radius).into_iter().chain(solid).collect();
         world.add_boundary(Boundary::new(vectors(solid), InteractionGroups::all()));
+        let low = vec3(-0.5 * tank.x, 0.0, -0.5 * tank.z);
         Self {
             world,
             fluid,
@@ -54,7 +47,8 @@ impl DamBreak {
         }
     }
 
-    pub(crate) fn step(&mut self, delta: f32) {
+    /// Moves on by `delta` seconds.
+    pub fn step(&mut self, delta: f32) {
         let gravity = Vector::y() * GRAVITY;
         for _ in 0..SUBSTEPS {
             self.world
@@ -79,13 +73,15 @@ impl DamBreak {
         }
     }
 
-    pub(crate) fn positions(&self) -> Vec<Vec3> {
+    /// Where the particles are.
+    pub fn positions(&self) -> Vec<Vec3> {
         let mut positions = Vec::new();
         self.write_positions(&mut positions);
         positions
     }
 
-    pub(crate) fn write_positions(&self, positions: &mut Vec<Vec3>) {
+    /// The same, into a buffer that is used again.
+    pub fn write_positions(&self, positions: &mut Vec<Vec3>) {
         positions.clear();
         if let Some(fluid) = self.world.fluids().get(self.fluid) {
             positions.extend(fluid.positions.iter().map(|p| vec3(p.x, p.y, p.z)));
@@ -93,12 +89,19 @@ impl DamBreak {
     }
 }
 
+/// A block of liquid at the left wall of a tank, as deep as the tank: `dam` wide and high.
+pub fn dam(tank: Vec3, dam: Vec2, radius: f32) -> Vec<Vec3> {
+    let low = vec3(-0.5 * tank.x, 0.0, -0.5 * tank.z);
+    let high = low + vec3(dam.x, dam.y, tank.z);
+    lattice(low + radius, high - radius, 2.0 * radius)
+}
+
 fn vectors(points: Vec<Vec3>) -> Vec<Vector<f32>> {
     points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect()
 }
 
 /// Points from `low` to `high`, both included where they are a multiple of `spacing` apart.
-fn lattice(low: Vec3, high: Vec3, spacing: f32) -> Vec<Vec3> {
+pub fn lattice(low: Vec3, high: Vec3, spacing: f32) -> Vec<Vec3> {
     let steps = ((high - low) / spacing + 1e-3).floor().as_ivec3();
     let mut points = Vec::new();
     for x in 0..=steps.x {
@@ -130,8 +133,8 @@ fn walls(tank: Vec3, radius: f32) -> Vec<Vec3> {
     points
 }
 
-/// The mantle of an upright cylinder.
-fn cylinder((foot, size): (Vec2, f32), height: f32, radius: f32) -> Vec<Vec3> {
+/// The mantle of an upright cylinder (foot, radius), in particles of `radius`.
+pub fn cylinder((foot, size): (Vec2, f32), height: f32, radius: f32) -> Vec<Vec3> {
     let around = (core::f32::consts::TAU * size / (2.0 * radius)).ceil() as u32;
     let up = (height / (2.0 * radius)).ceil() as u32;
     let mut points = Vec::new();
