@@ -70,8 +70,8 @@ fn main() -> ExitCode {
     }
     let bytes: Vec<u8> = simulation
         .positions()
-        .iter()
-        .flat_map(|p| p.to_array())
+        .into_iter()
+        .flat_map(<[f32; 3]>::from)
         .flat_map(f32::to_le_bytes)
         .collect();
     match fs::write(&args.out, bytes) {

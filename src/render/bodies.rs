@@ -9,10 +9,7 @@ use bevy::{
         camera::ExtractedCamera,
         render_asset::RenderAssets,
         render_phase::TrackedRenderPass,
-        render_resource::{
-            BindGroup, CachedRenderPipelineId, DynamicUniformBuffer, PipelineCache,
-            SpecializedRenderPipelines,
-        },
+        render_resource::{BindGroup, DynamicUniformBuffer, PipelineCache},
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, GpuImage, TextureCache},
         view::{ExtractedView, ViewUniformOffset},
@@ -21,22 +18,20 @@ use bevy::{
 
 use super::{
     bounds::Bounds,
-    composite::{CompositeKey, CompositePipeline},
+    composite::CompositeKey,
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
     gpu_types::{GpuBody, GpuFluid},
     layers::Layers,
-    normals::{BulkNormals, NormalSource, NormalsPipeline},
+    pipelines::{BodyPipelines, Pipelines},
     plan::{Plan, PlanInput, plan},
-    refract::{RefractKey, RefractPipeline},
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
-    smooth::{SmoothPipeline, SmoothSteps, window_radii},
-    splat::{SplatOutput, SplatPipeline, SplatPipelines},
+    smooth::SmoothSteps,
     support::FluidSupport,
 };
 use crate::{
     material::FluidMaterial,
-    settings::{FluidDebugView, Fresnel, ScreenSpaceFluid, Search, Smoothing},
+    settings::{FluidDebugView, ScreenSpaceFluid},
 };
 
 /// The fluids of equal material that a view sees, and everything their passes need.
@@ -64,31 +59,6 @@ pub(crate) struct BodyFluid {
     pub(crate) entity: Entity,
     pub(crate) bulk: Range<u32>,
     pub(crate) spray: Range<u32>,
-}
-
-pub(crate) struct BodyPipelines {
-    pub(crate) splat: SplatPipelines,
-    pub(crate) smooth: Vec<CachedRenderPipelineId>,
-    pub(crate) bulk_normals: BulkNormals,
-    pub(crate) spray_normals: Option<CachedRenderPipelineId>,
-    pub(crate) refract: CachedRenderPipelineId,
-    pub(crate) composite: CachedRenderPipelineId,
-}
-
-impl BodyPipelines {
-    fn ready(&self, cache: &PipelineCache) -> bool {
-        let splat: &[_] = match &self.splat {
-            SplatPipelines::MaxBlend(id) => &[*id],
-            SplatPipelines::DepthDraws { front, back, merge } => &[*front, *back, *merge],
-        };
-        splat
-            .iter()
-            .chain(&self.smooth)
-            .chain(self.bulk_normals.pipelines())
-            .chain(&self.spray_normals)
-            .chain([&self.refract, &self.composite])
-            .all(|&id| cache.get_render_pipeline(id).is_some())
-    }
 }
 
 #[derive(Default)]
@@ -146,82 +116,6 @@ pub(crate) struct FluidUniforms {
     pub(crate) fluids: DynamicUniformBuffer<GpuFluid>,
     /// For debug views: nearest and farthest view depth.
     pub(crate) depth_ranges: DynamicUniformBuffer<Vec4>,
-}
-
-/// The pipelines of all passes, by key.
-#[derive(bevy::ecs::system::SystemParam)]
-pub(crate) struct Pipelines<'w> {
-    cache: Res<'w, PipelineCache>,
-    splat: Res<'w, SplatPipeline>,
-    splats: ResMut<'w, SpecializedRenderPipelines<SplatPipeline>>,
-    smooth: Res<'w, SmoothPipeline>,
-    smooths: ResMut<'w, SpecializedRenderPipelines<SmoothPipeline>>,
-    normals: Res<'w, NormalsPipeline>,
-    normalses: ResMut<'w, SpecializedRenderPipelines<NormalsPipeline>>,
-    refract: Res<'w, RefractPipeline>,
-    refracts: ResMut<'w, SpecializedRenderPipelines<RefractPipeline>>,
-    composite: Res<'w, CompositePipeline>,
-    composites: ResMut<'w, SpecializedRenderPipelines<CompositePipeline>>,
-}
-
-impl Pipelines<'_> {
-    fn splat(&mut self, output: SplatOutput) -> CachedRenderPipelineId {
-        self.splats.specialize(&self.cache, &self.splat, output)
-    }
-
-    fn normals(&mut self, source: NormalSource) -> CachedRenderPipelineId {
-        self.normalses
-            .specialize(&self.cache, &self.normals, source)
-    }
-
-    fn of(
-        &mut self,
-        plan: &Plan,
-        steps: &SmoothSteps,
-        settings: &ScreenSpaceFluid,
-        max_blend: bool,
-        composite: CompositeKey,
-    ) -> BodyPipelines {
-        let splat = if max_blend {
-            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers))
-        } else {
-            SplatPipelines::DepthDraws {
-                front: self.splat(SplatOutput::FrontDepth),
-                back: self.splat(SplatOutput::BackDepth),
-                merge: self.splat.merge,
-            }
-        };
-        let bulk_normals = match plan.smoothing {
-            _ if !plan.bulk || steps.yields_normals() => BulkNormals::Smoothed,
-            Smoothing::NormalAverage(average) => BulkNormals::Averaged {
-                splats: self.normals(NormalSource::Ellipsoids),
-                average: self.normals(NormalSource::Average {
-                    half_taps: average.half_taps.clamp(1, 8),
-                }),
-            },
-            _ => BulkNormals::Depth(self.normals(NormalSource::Depth)),
-        };
-        let refract = RefractKey {
-            interfaces: plan.interfaces,
-            bulk: plan.bulk,
-            spray: plan.spray,
-            index_one: plan.index_one,
-            secant: plan.interfaces > 1 && settings.search == Search::Secant,
-            schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
-        };
-        BodyPipelines {
-            splat,
-            smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
-            bulk_normals,
-            spray_normals: plan.spray.then(|| self.normals(NormalSource::Ellipsoids)),
-            refract: self
-                .refracts
-                .specialize(&self.cache, &self.refract, refract),
-            composite: self
-                .composites
-                .specialize(&self.cache, &self.composite, composite),
-        }
-    }
 }
 
 /// Writes where every fluid stands.
@@ -319,7 +213,9 @@ pub(crate) fn prepare_bodies(
                 .map
                 .as_ref()
                 .filter(|map| is_cubemap(&images, map.image.id()));
-            let mut body = gpu_body(&material, radius, settings, &plan, &lights);
+            let mut body = GpuBody::new(&material, radius, settings, &plan.smoothing);
+            body.lights = lights.lights;
+            body.light_count = lights.count;
             if let Some(map) = map {
                 // Cubemaps are left-handed.
                 body.environment_from_world = Mat3::from_diagonal(vec3(1.0, 1.0, -1.0))
@@ -420,60 +316,6 @@ fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
     images
         .get(id)
         .is_some_and(|image| image.texture.depth_or_array_layers() == 6)
-}
-
-/// For methods that know no bound.
-const UNBOUND: f32 = 1e6;
-
-fn gpu_body(
-    material: &FluidMaterial,
-    radius: f32,
-    settings: &ScreenSpaceFluid,
-    plan: &Plan,
-    lights: &FluidLights,
-) -> GpuBody {
-    let positive = |value: f32, fallback: f32| {
-        if value.is_finite() && value > 0.0 {
-            value
-        } else {
-            fallback
-        }
-    };
-    let (window, range, bound) = match plan.smoothing {
-        Smoothing::None => (0.0, 1.0, 0.0),
-        Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
-        // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²).
-        Smoothing::Bilateral(filter) => (
-            window_radii(filter.window),
-            filter.range * core::f32::consts::SQRT_2,
-            UNBOUND,
-        ),
-        Smoothing::NormalAverage(average) => (window_radii(average.window), 1.0, UNBOUND),
-        Smoothing::NarrowRange(filter) => (window_radii(filter.window), filter.range, UNBOUND),
-        Smoothing::CurvatureFlow(flow) => (0.0, flow.range, UNBOUND),
-    };
-    let flow_step = match plan.smoothing {
-        Smoothing::CurvatureFlow(flow) => positive(flow.step, 0.0).min(0.5),
-        _ => 0.0,
-    };
-    GpuBody {
-        extinction: material.medium.extinction(),
-        refractive_index: positive(material.refractive_index, 1.0).clamp(0.2, 5.0),
-        lights: lights.lights,
-        light_count: lights.count,
-        perceptual_roughness: positive(material.perceptual_roughness, 0.1).clamp(0.03, 1.0),
-        radius,
-        window_radii: window,
-        range: positive(range, 2.0) * radius,
-        bound: positive(bound, 2.0) * radius,
-        flow_step,
-        coarse_samples: match settings.search {
-            Search::Secant => 0,
-            Search::Bracketed { coarse_samples } => coarse_samples.min(32),
-        },
-        contact: positive(settings.contact, 0.0) * radius,
-        ..default()
-    }
 }
 
 /// Nearest and farthest depth of the box, for debug views.

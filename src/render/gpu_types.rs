@@ -2,6 +2,12 @@
 
 use bevy::{prelude::*, render::render_resource::ShaderType};
 
+use super::smooth::window_radii;
+use crate::{
+    material::FluidMaterial,
+    settings::{ScreenSpaceFluid, Search, Smoothing},
+};
+
 /// Directional lights that give highlights; further ones are left out.
 pub(crate) const MAX_LIGHTS: usize = 4;
 
@@ -36,6 +42,61 @@ pub(crate) struct GpuBody {
     pub(crate) flow_step: f32,
     pub(crate) coarse_samples: u32,
     pub(crate) contact: f32,
+}
+
+/// For methods that know no bound.
+const UNBOUND: f32 = 1e6;
+
+impl GpuBody {
+    /// A body of particles of `radius` (world units); values that make no sense give way to safe
+    /// ones. Lights and surroundings are left dark.
+    pub(crate) fn new(
+        material: &FluidMaterial,
+        radius: f32,
+        settings: &ScreenSpaceFluid,
+        smoothing: &Smoothing,
+    ) -> Self {
+        let positive = |value: f32, fallback: f32| {
+            if value.is_finite() && value > 0.0 {
+                value
+            } else {
+                fallback
+            }
+        };
+        let (window, range, bound) = match *smoothing {
+            Smoothing::None => (0.0, 1.0, 0.0),
+            Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
+            // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²).
+            Smoothing::Bilateral(filter) => (
+                window_radii(filter.window),
+                filter.range * core::f32::consts::SQRT_2,
+                UNBOUND,
+            ),
+            Smoothing::NormalAverage(average) => (window_radii(average.window), 1.0, UNBOUND),
+            Smoothing::NarrowRange(filter) => (window_radii(filter.window), filter.range, UNBOUND),
+            Smoothing::CurvatureFlow(flow) => (0.0, flow.range, UNBOUND),
+        };
+        let flow_step = match *smoothing {
+            Smoothing::CurvatureFlow(flow) => positive(flow.step, 0.0).min(0.5),
+            _ => 0.0,
+        };
+        Self {
+            extinction: material.medium.extinction(),
+            refractive_index: positive(material.refractive_index, 1.0).clamp(0.2, 5.0),
+            perceptual_roughness: positive(material.perceptual_roughness, 0.1).clamp(0.03, 1.0),
+            radius,
+            window_radii: window,
+            range: positive(range, 2.0) * radius,
+            bound: positive(bound, 2.0) * radius,
+            flow_step,
+            coarse_samples: match settings.search {
+                Search::Secant => 0,
+                Search::Bracketed { coarse_samples } => coarse_samples.min(32),
+            },
+            contact: positive(settings.contact, 0.0) * radius,
+            ..default()
+        }
+    }
 }
 
 /// How a search for the next interface ended, as stored per ray (`STATUS_…` in `types.wgsl`).

@@ -9,6 +9,7 @@ mod extract;
 mod gpu_types;
 mod layers;
 mod normals;
+mod pipelines;
 mod plan;
 mod refract;
 mod scene_depth;

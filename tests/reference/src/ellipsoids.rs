@@ -105,7 +105,11 @@ impl Ellipsoids {
 
     /// Balls of one radius (m).
     pub fn spheres(centers: &[DVec3], radius: f64) -> Self {
-        Self::new(centers.iter().map(|&center| Ellipsoid::sphere(center, radius)))
+        Self::new(
+            centers
+                .iter()
+                .map(|&center| Ellipsoid::sphere(center, radius)),
+        )
     }
 }
 
@@ -117,12 +121,14 @@ impl Surface for Ellipsoids {
             let Some(span) = item.span(ray, 1.0) else {
                 return;
             };
-            out.extend([(span[0], true), (span[1], false)].map(|(t, entering)| Crossing {
-                t,
-                normal: item.normal(ray.at(t)),
-                entering,
-                body: 0,
-            }));
+            out.extend(
+                [(span[0], true), (span[1], false)].map(|(t, entering)| Crossing {
+                    t,
+                    normal: item.normal(ray.at(t)),
+                    entering,
+                    body: 0,
+                }),
+            );
         });
         keep_outermost(out, start, 0);
     }

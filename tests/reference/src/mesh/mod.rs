@@ -7,7 +7,7 @@ mod triangle;
 
 use glam::{DVec3, UVec2};
 
-use crate::{Camera, Crossing, Image, Ray, Span, Surface, boxes::Boxes};
+use crate::{Camera, Crossing, Hit, Image, Ray, Span, Surface, boxes::Boxes, tracer::SKIN};
 
 use triangle::Triangle;
 
@@ -33,7 +33,7 @@ pub struct Layer {
 impl Layer {
     /// Exact layers with exact normals.
     pub fn from_spans(spans: &Image<Option<Span>>) -> Self {
-        let sheet = |side: fn(&Span) -> crate::Hit| Sheet {
+        let sheet = |side: fn(&Span) -> Hit| Sheet {
             depth: spans.map(|span| span.as_ref().map(|span| side(span).device_depth)),
             normals: Some(spans.map(|span| span.as_ref().map(|span| side(span).normal))),
         };
@@ -73,7 +73,8 @@ impl LayerMeshes {
         }
         let depths = layers.iter().map(|layer| {
             Image::from_fn(camera.size, |pixel| {
-                let [front, back] = [&layer.front, &layer.back].map(|s| view_depth(camera, s, pixel));
+                let [front, back] =
+                    [&layer.front, &layer.back].map(|s| view_depth(camera, s, pixel));
                 Some([front?, back?])
             })
         });
@@ -99,24 +100,13 @@ fn view_depth(camera: &Camera, sheet: &Sheet, pixel: UVec2) -> Option<f64> {
 
 impl Surface for LayerMeshes {
     fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
-        let start = out.len();
+        let mut met = Vec::new();
         self.boxes
-            .met(ray, |index| out.extend(self.triangles[index].crossing(ray)));
-        out[start..].sort_by(|a, b| a.t.total_cmp(&b.t));
+            .met(ray, |index| met.extend(self.triangles[index].crossing(ray)));
+        met.sort_by(|a: &Crossing, b| a.t.total_cmp(&b.t));
         // On an edge a ray meets both triangles.
-        let mut last: Option<Crossing> = None;
-        let mut index = 0;
-        out.retain(|crossing| {
-            index += 1;
-            let same = |last: Crossing| {
-                last.body == crossing.body
-                    && last.entering == crossing.entering
-                    && crossing.t - last.t < super::tracer::SKIN
-            };
-            let again = index > start && last.is_some_and(same);
-            last = Some(*crossing);
-            !again
-        });
+        met.dedup_by(|b, a| b.body == a.body && b.entering == a.entering && b.t - a.t < SKIN);
+        out.append(&mut met);
     }
 
     /// The layer between whose front and back a point lies, at its nearest pixel.

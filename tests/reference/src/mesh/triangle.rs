@@ -66,7 +66,11 @@ pub(super) fn triangulate(camera: &Camera, sheet: &Sheet, step: f64, front: bool
         Some(Corner {
             at: camera.unproject(pixel.as_dvec2() + 0.5, depth),
             depth,
-            normal: sheet.normals.as_ref().and_then(given).unwrap_or(DVec3::ZERO),
+            normal: sheet
+                .normals
+                .as_ref()
+                .and_then(given)
+                .unwrap_or(DVec3::ZERO),
         })
     });
     let faces = faces(camera.size, &corners, step);
@@ -76,7 +80,10 @@ pub(super) fn triangulate(camera: &Camera, sheet: &Sheet, step: f64, front: bool
         let plane = (c - a).cross(b - a);
         if front { plane } else { -plane }
     };
-    let mut around = corners.map(|corner| corner.map_or(DVec3::ZERO, |corner| corner.normal)).pixels().to_vec();
+    let mut around = corners
+        .map(|corner| corner.map_or(DVec3::ZERO, |corner| corner.normal))
+        .pixels()
+        .to_vec();
     if sheet.normals.is_none() {
         for &face in &faces {
             for corner in face {
@@ -118,7 +125,11 @@ fn faces(size: UVec2, corners: &Image<Option<Corner>>, step: f64) -> Vec<[usize;
             let [kept_falling, kept_rising] =
                 [falling, rising].map(|halves| halves.into_iter().filter(whole));
             let [falls, rises] = [kept_falling.clone().count(), kept_rising.clone().count()];
-            let gap = |a, b| depth(a).zip(depth(b)).map_or(0.0, |(a, b): (f64, f64)| (a - b).abs());
+            let gap = |a, b| {
+                depth(a)
+                    .zip(depth(b))
+                    .map_or(0.0, |(a, b): (f64, f64)| (a - b).abs())
+            };
             // The shorter diagonal keeps ridges.
             if falls > rises || (falls == rises && gap(a, c) <= gap(b, d)) {
                 out.extend(kept_falling);

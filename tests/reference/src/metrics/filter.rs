@@ -21,7 +21,11 @@ pub(super) fn normalized(mut weights: Vec<f64>) -> Vec<f64> {
     let sum = |sign: f64| -> f64 { weights.iter().map(|w| (sign * w).max(0.0)).sum() };
     let [above, below] = [sum(1.0), sum(-1.0)];
     for weight in &mut weights {
-        *weight /= if *weight > 0.0 { above } else { below.max(f64::MIN_POSITIVE) };
+        *weight /= if *weight > 0.0 {
+            above
+        } else {
+            below.max(f64::MIN_POSITIVE)
+        };
     }
     weights
 }

@@ -59,23 +59,34 @@ pub fn flip(
         let difference = (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
         (difference / SQRT_2).powf(FEATURE_EXPONENT)
     });
-    finite("FLIP", zip(&color, &feature, |color, feature| color.powf(1.0 - feature)))
+    finite(
+        "FLIP",
+        zip(&color, &feature, |color, feature| color.powf(1.0 - feature)),
+    )
 }
 
 /// The picture as it is seen: without what is too fine, in Lab with Hunt's adjustment.
 fn perceived(opponent: &Image<DVec3>, pixels_per_degree: f64) -> Image<DVec3> {
-    let widest = SENSITIVITY.iter().copied().flatten().fold(0.0, |w: f64, [_, b]| w.max(*b));
+    let widest = SENSITIVITY
+        .iter()
+        .copied()
+        .flatten()
+        .fold(0.0, |w: f64, [_, b]| w.max(*b));
     let radius = (3.0 * (widest / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
     let [y, x, z] = [0, 1, 2].map(|channel| {
         let image = opponent.map(|c| c[channel]);
         let mut sum = image.map(|_| 0.0);
         let mut total = 0.0;
         for [a, b] in SENSITIVITY[channel] {
-            let bell = weights(radius, |x| (-PI * PI * (x / pixels_per_degree).powi(2) / b).exp());
+            let bell = weights(radius, |x| {
+                (-PI * PI * (x / pixels_per_degree).powi(2) / b).exp()
+            });
             // What this Gaussian adds to the sum of all weights.
             let share = a * (PI / b).sqrt() * bell.iter().sum::<f64>().powi(2);
             let bell = normalized(bell);
-            sum = zip(&sum, &filter(&image, &bell, &bell), |sum, part| sum + share * part);
+            sum = zip(&sum, &filter(&image, &bell, &bell), |sum, part| {
+                sum + share * part
+            });
             total += share;
         }
         sum.map(|value| value / total)
@@ -111,7 +122,9 @@ fn features(opponent: &Image<DVec3>, pixels_per_degree: f64) -> Image<[f64; 2]> 
         let across = filter(&light, detector, &bell);
         zip(&across, &filter(&light, &bell, detector), f64::hypot)
     };
-    zip(&strength(&edge), &strength(&point), |edge, point| [edge, point])
+    zip(&strength(&edge), &strength(&point), |edge, point| {
+        [edge, point]
+    })
 }
 
 /// Distance of large colour differences (Abasi et al. 2020).
@@ -138,9 +151,21 @@ fn decode_srgb(encoded: DVec3) -> DVec3 {
 /// CIE XYZ of linear sRGB with the white (0.3127, 0.3290).
 fn xyz_from_rgb() -> DMat3 {
     DMat3::from_cols(
-        DVec3::new(10_135_552.0 / 24_577_794.0, 2_613_072.0 / 12_288_897.0, 1_425_312.0 / 73_733_382.0),
-        DVec3::new(8_788_810.0 / 24_577_794.0, 8_788_810.0 / 12_288_897.0, 8_788_810.0 / 73_733_382.0),
-        DVec3::new(4_435_075.0 / 24_577_794.0, 887_015.0 / 12_288_897.0, 70_074_185.0 / 73_733_382.0),
+        DVec3::new(
+            10_135_552.0 / 24_577_794.0,
+            2_613_072.0 / 12_288_897.0,
+            1_425_312.0 / 73_733_382.0,
+        ),
+        DVec3::new(
+            8_788_810.0 / 24_577_794.0,
+            8_788_810.0 / 12_288_897.0,
+            8_788_810.0 / 73_733_382.0,
+        ),
+        DVec3::new(
+            4_435_075.0 / 24_577_794.0,
+            887_015.0 / 12_288_897.0,
+            70_074_185.0 / 73_733_382.0,
+        ),
     )
 }
 

@@ -34,18 +34,19 @@ impl Regions {
         let edge = Image::from_fn(size, |pixel| {
             let [x, y] = pixel.as_i64vec2().to_array();
             let here = depth(x, y);
-            [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().any(|(dx, dy)| {
-                match (here, depth(x + dx, y + dy)) {
+            [(1, 0), (-1, 0), (0, 1), (0, -1)]
+                .into_iter()
+                .any(|(dx, dy)| match (here, depth(x + dx, y + dy)) {
                     (Some(a), Some(b)) => (a - b).abs() > step,
                     (a, b) => a.is_some() != b.is_some(),
-                }
-            })
+                })
         });
         // Pixels on both sides of an edge are edge pixels: the first of the band.
         let reach = i64::from(band) - 1;
         let silhouette = Image::from_fn(size, |pixel| {
             let [x, y] = pixel.as_i64vec2().to_array();
-            let mut around = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+            let mut around =
+                (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
             around.any(|(dx, dy)| *edge.clamped(x + dx, y + dy))
         });
         let grazed = |pixel: UVec2, span: &Span| {

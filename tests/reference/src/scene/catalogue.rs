@@ -91,14 +91,14 @@ pub fn half_filled_box(radius: f64) -> Scene {
 
 /// A ball before another one, which shows half beside the first.
 pub fn two_spheres(radius: f64) -> Scene {
-    let balls = [
-        (dvec3(-0.15, 0.0, 0.0), 0.4),
-        (dvec3(0.25, 0.1, -1.2), 0.5),
-    ]
-    .map(|(center, radius)| Sphere { center, radius });
+    let balls = [(dvec3(-0.15, 0.0, 0.0), 0.4), (dvec3(0.25, 0.1, -1.2), 0.5)]
+        .map(|(center, radius)| Sphere { center, radius });
     Scene {
         name: "two spheres",
-        particles: balls.iter().flat_map(|ball| fill_sphere(ball, radius, 1)).collect(),
+        particles: balls
+            .iter()
+            .flat_map(|ball| fill_sphere(ball, radius, 1))
+            .collect(),
         surface: union(balls),
         radius,
         eye: dvec3(0.0, 0.0, 2.0),

@@ -44,6 +44,6 @@ impl Scene {
 
     /// The centres as the renderer takes them, m.
     pub fn positions(&self) -> Vec<Vec3> {
-        self.particles.iter().map(DVec3::as_vec3).collect()
+        self.particles.iter().map(|p| p.as_vec3()).collect()
     }
 }

@@ -47,11 +47,7 @@ pub fn fill_cuboid(body: &Cuboid, radius: f64, seed: u64) -> Vec<DVec3> {
     for (i, &x) in xs.iter().enumerate() {
         for (j, &y) in ys.iter().enumerate() {
             for (k, &z) in zs.iter().enumerate() {
-                let freedom = DVec3::new(
-                    free(i, xs.len()),
-                    free(j, ys.len()),
-                    free(k, zs.len()),
-                );
+                let freedom = DVec3::new(free(i, xs.len()), free(j, ys.len()), free(k, zs.len()));
                 let moved = random.point() * freedom * JITTER * radius;
                 out.push(world.transform_point3(DVec3::new(x, y, z) + moved));
             }

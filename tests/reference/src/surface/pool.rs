@@ -69,7 +69,11 @@ impl RippledPool {
         let middle = 0.5 * (low + high);
         let half = 0.5 * (high - low);
         let speed = |w: &Wave| w.wave_vector.dot(across(ray.direction)).abs();
-        let steepest: f64 = self.waves.iter().map(|w| w.amplitude.abs() * speed(w)).sum();
+        let steepest: f64 = self
+            .waves
+            .iter()
+            .map(|w| w.amplitude.abs() * speed(w))
+            .sum();
         let curviest = |w: &Wave| w.amplitude.abs() * speed(w) * speed(w);
         let curviest: f64 = self.waves.iter().map(curviest).sum();
         if self.above(ray, middle).abs() > (steepest + ray.direction.y.abs()) * half {

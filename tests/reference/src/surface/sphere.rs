@@ -22,12 +22,14 @@ impl Surface for Sphere {
         let half_squared = self.radius * self.radius - closest.length_squared();
         if half_squared > 0.0 {
             let half = half_squared.sqrt();
-            out.extend([(-half, true), (half, false)].map(|(from_middle, entering)| Crossing {
-                t: middle + from_middle,
-                normal: (closest + from_middle * ray.direction) / self.radius,
-                entering,
-                body: 0,
-            }));
+            out.extend(
+                [(-half, true), (half, false)].map(|(from_middle, entering)| Crossing {
+                    t: middle + from_middle,
+                    normal: (closest + from_middle * ray.direction) / self.radius,
+                    entering,
+                    body: 0,
+                }),
+            );
         }
     }
 

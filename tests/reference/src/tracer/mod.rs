@@ -173,7 +173,10 @@ impl<'a> Tracer<'a> {
             return left * reflected;
         };
         let passes = 1.0 - at.reflectance;
-        let refracted = self.light(self.refracted(&state, &crossing, direction), weight * passes);
+        let refracted = self.light(
+            self.refracted(&state, &crossing, direction),
+            weight * passes,
+        );
         left * (at.reflectance * reflected + passes * refracted)
     }
 

@@ -25,7 +25,8 @@ impl Tracer<'_> {
     pub fn render(&self, camera: &Camera, side: u32) -> Image<DVec3> {
         Image::from_fn(camera.size, |pixel| {
             let place = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
-            let samples = (0..side).flat_map(|y| (0..side).map(move |x| DVec2::new(place(x), place(y))));
+            let samples =
+                (0..side).flat_map(|y| (0..side).map(move |x| DVec2::new(place(x), place(y))));
             let sum: DVec3 = samples
                 .map(|within| self.radiance(camera.ray(pixel.as_dvec2() + within)))
                 .sum();

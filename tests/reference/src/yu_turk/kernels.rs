@@ -44,11 +44,7 @@ impl Default for AnisotropicKernel {
 const SPREAD: [f64; 2] = [1e-4, 1e-3];
 
 /// One ellipsoid for each particle of `radius` (m), in their order.
-pub fn anisotropic(
-    particles: &[DVec3],
-    radius: f64,
-    kernel: &AnisotropicKernel,
-) -> Vec<Ellipsoid> {
+pub fn anisotropic(particles: &[DVec3], radius: f64, kernel: &AnisotropicKernel) -> Vec<Ellipsoid> {
     let reach = kernel.neighbor_radius * radius;
     let cell = |p: DVec3| (p / reach).floor().as_i64vec3();
     let mut cells: HashMap<I64Vec3, Vec<DVec3>> = HashMap::new();

@@ -81,7 +81,10 @@ impl ImplicitSurface {
             }
             let above = |t: f64| {
                 let point = ray.at(t);
-                let sum: f64 = active.iter().map(|&(_, index)| self.kernel(index, point)).sum();
+                let sum: f64 = active
+                    .iter()
+                    .map(|&(_, index)| self.kernel(index, point))
+                    .sum();
                 sum - Self::ISO
             };
             let is_inside = above(end) > 0.0;

@@ -47,7 +47,10 @@ impl ImplicitSurface {
         let solid = |of: &Ellipsoid| of.matrix.inverse().is_finite();
         let ellipsoids: Vec<_> = ellipsoids.into_iter().filter(solid).collect();
         let boxes = Boxes::new(ellipsoids.iter().map(|of| of.corners(Self::SUPPORT)));
-        let minor = ellipsoids.iter().map(minor_axis).fold(f64::INFINITY, f64::min);
+        let minor = ellipsoids
+            .iter()
+            .map(minor_axis)
+            .fold(f64::INFINITY, f64::min);
         let items = ellipsoids.into_iter().map(|of| {
             let volume = (2.0 * radius).powi(3);
             let kernel = of.matrix.determinant().abs() * Self::SUPPORT.powi(3);

@@ -1,0 +1,121 @@
+//! Which pipelines a body's passes need.
+
+use bevy::{
+    ecs::system::SystemParam,
+    prelude::*,
+    render::render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
+};
+
+use super::{
+    composite::{CompositeKey, CompositePipeline},
+    normals::{BulkNormals, NormalSource, NormalsPipeline},
+    plan::Plan,
+    refract::{RefractKey, RefractPipeline},
+    smooth::{SmoothPipeline, SmoothSteps},
+    splat::{SplatOutput, SplatPipeline, SplatPipelines},
+};
+use crate::settings::{Fresnel, ScreenSpaceFluid, Search, Smoothing};
+
+/// The pipelines of a body's passes.
+pub(crate) struct BodyPipelines {
+    pub(crate) splat: SplatPipelines,
+    pub(crate) smooth: Vec<CachedRenderPipelineId>,
+    pub(crate) bulk_normals: BulkNormals,
+    pub(crate) spray_normals: Option<CachedRenderPipelineId>,
+    pub(crate) refract: CachedRenderPipelineId,
+    pub(crate) composite: CachedRenderPipelineId,
+}
+
+impl BodyPipelines {
+    /// Whether all of them are compiled.
+    pub(crate) fn ready(&self, cache: &PipelineCache) -> bool {
+        let splat: &[_] = match &self.splat {
+            SplatPipelines::MaxBlend(id) => &[*id],
+            SplatPipelines::DepthDraws { front, back, merge } => &[*front, *back, *merge],
+        };
+        splat
+            .iter()
+            .chain(&self.smooth)
+            .chain(self.bulk_normals.pipelines())
+            .chain(&self.spray_normals)
+            .chain([&self.refract, &self.composite])
+            .all(|&id| cache.get_render_pipeline(id).is_some())
+    }
+}
+
+/// The pipelines of all passes, by key.
+#[derive(SystemParam)]
+pub(crate) struct Pipelines<'w> {
+    cache: Res<'w, PipelineCache>,
+    splat: Res<'w, SplatPipeline>,
+    splats: ResMut<'w, SpecializedRenderPipelines<SplatPipeline>>,
+    smooth: Res<'w, SmoothPipeline>,
+    smooths: ResMut<'w, SpecializedRenderPipelines<SmoothPipeline>>,
+    normals: Res<'w, NormalsPipeline>,
+    normalses: ResMut<'w, SpecializedRenderPipelines<NormalsPipeline>>,
+    refract: Res<'w, RefractPipeline>,
+    refracts: ResMut<'w, SpecializedRenderPipelines<RefractPipeline>>,
+    composite: Res<'w, CompositePipeline>,
+    composites: ResMut<'w, SpecializedRenderPipelines<CompositePipeline>>,
+}
+
+impl Pipelines<'_> {
+    fn splat(&mut self, output: SplatOutput) -> CachedRenderPipelineId {
+        self.splats.specialize(&self.cache, &self.splat, output)
+    }
+
+    fn normals(&mut self, source: NormalSource) -> CachedRenderPipelineId {
+        self.normalses
+            .specialize(&self.cache, &self.normals, source)
+    }
+
+    /// All that a body's plan asks for.
+    pub(crate) fn of(
+        &mut self,
+        plan: &Plan,
+        steps: &SmoothSteps,
+        settings: &ScreenSpaceFluid,
+        max_blend: bool,
+        composite: CompositeKey,
+    ) -> BodyPipelines {
+        let splat = if max_blend {
+            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers))
+        } else {
+            SplatPipelines::DepthDraws {
+                front: self.splat(SplatOutput::FrontDepth),
+                back: self.splat(SplatOutput::BackDepth),
+                merge: self.splat.merge,
+            }
+        };
+        let bulk_normals = match plan.smoothing {
+            _ if !plan.bulk || steps.yields_normals() => BulkNormals::Smoothed,
+            Smoothing::NormalAverage(average) => BulkNormals::Averaged {
+                splats: self.normals(NormalSource::Ellipsoids),
+                average: self.normals(NormalSource::Average {
+                    half_taps: average.half_taps.clamp(1, 8),
+                }),
+            },
+            _ => BulkNormals::Depth(self.normals(NormalSource::Depth)),
+        };
+        let refract = RefractKey {
+            interfaces: plan.interfaces,
+            bulk: plan.bulk,
+            spray: plan.spray,
+            index_one: plan.index_one,
+            secant: plan.interfaces > 1 && settings.search == Search::Secant,
+            schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
+        };
+        BodyPipelines {
+            splat,
+            smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
+            bulk_normals,
+            spray_normals: plan.spray.then(|| self.normals(NormalSource::Ellipsoids)),
+            refract: self
+                .refracts
+                .specialize(&self.cache, &self.refract, refract),
+            composite: self
+                .composites
+                .specialize(&self.cache, &self.composite, composite),
+        }
+    }
+}
