@@ -34,12 +34,12 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 
-pub mod material;
-pub mod medium;
-pub mod particles;
+mod material;
+mod medium;
+mod particles;
 pub mod render;
-pub mod schedule;
-pub mod settings;
+mod schedule;
+mod settings;
 pub mod shape;
 
 use bevy::prelude::*;

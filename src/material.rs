@@ -20,7 +20,7 @@ pub struct FluidMaterial {
 }
 
 impl FluidMaterial {
-    /// Clean water: red fades first, a fifth of it over a metre.
+    /// Clean water: red fades first, almost a third of it over a metre.
     pub const WATER: Self = Self {
         refractive_index: 1.333,
         medium: Medium {

@@ -1,6 +1,6 @@
 //! Particles as a component, and the system that has them shaped.
 
-use bevy::{prelude::*, utils::once};
+use bevy::prelude::*;
 
 use crate::{
     material::FluidMaterial,
@@ -36,6 +36,8 @@ pub struct ShapedFluid {
     pub(crate) splats: FluidSplats,
     fresh: bool,
     generation: u64,
+    /// Why the fluid is not drawn, said when it changes.
+    error: Option<String>,
 }
 
 impl ShapedFluid {
@@ -85,11 +87,12 @@ pub(crate) fn shape_fluids(
 ) {
     for (entity, particles, kernel, mut shaped) in &mut fluids {
         let splats = &mut shaped.splats;
-        if let Err(error) = workspace.shape(&particles.positions, particles.radius, kernel, splats)
-        {
-            *splats = FluidSplats::default();
-            once!(warn!("fluid {entity} is not drawn: {error}"));
+        let result = workspace.shape(&particles.positions, particles.radius, kernel, splats);
+        let error = result.err().map(|error| error.to_string());
+        if let Some(error) = error.as_ref().filter(|_| error != shaped.error) {
+            warn!("fluid {entity} is not drawn: {error}");
         }
+        shaped.error = error;
         shaped.fresh = true;
         shaped.generation += 1;
     }

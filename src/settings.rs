@@ -51,9 +51,7 @@ impl ScreenSpaceFluid {
         fresnel: Fresnel::Schlick,
         contact: 0.0,
     };
-}
 
-impl ScreenSpaceFluid {
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
     /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
     pub const EARLIER: Self = Self {
@@ -77,7 +75,7 @@ impl Default for ScreenSpaceFluid {
 pub enum Refractions {
     /// Nothing is bent: reflection and absorption along the straight line only.
     Zero,
-    /// Only the first surface bends; absorption along the bent ray.
+    /// Only the first surface bends; absorption as along the straight ray.
     One,
     /// Into one body and out of it.
     Two,
@@ -164,7 +162,7 @@ impl Default for Smoothing {
 #[reflect(Clone, PartialEq)]
 pub enum Window {
     /// So many particle radii as they appear on screen, whatever the distance: taps spread out
-    /// for near particles and fall away for far ones. Range 0.2..=2.
+    /// for near particles and fall away for far ones. Range 0.05..=4.
     Radii(f32),
     /// As many pixels as there are taps, as the papers have it.
     Pixels,
@@ -174,7 +172,7 @@ pub enum Window {
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct PlaneFit {
-    /// Which fit.
+    /// Which fit. Default: separable.
     pub form: PlaneFitForm,
     /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 4.
     /// More: smoother between taps, at a linear (separable) or quadratic price.
@@ -230,7 +228,7 @@ pub enum PlaneFitForm {
     Separable,
 }
 
-/// Bilateral smoothing (thesis 3.1).
+/// Bilateral smoothing (thesis 3.2, equation 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct Bilateral {
@@ -238,25 +236,31 @@ pub struct Bilateral {
     pub half_taps: u32,
     /// How often the filter is repeated. Range 1..=64, default 22.
     pub iterations: u32,
-    /// How large the window is. Default: as many pixels as taps, as published.
+    /// How large the window is. Default 0.5 radii.
     pub window: Window,
     /// σ₂ in particle radii. Range 0.5..=4, default 2√2.
     pub range: f32,
 }
 
 impl Bilateral {
-    /// As published: 7×7, 22 times.
-    pub const THESIS: Self = Self {
+    /// The published taps over a window that follows the particles on screen.
+    pub const DEFAULT: Self = Self {
         half_taps: 3,
         iterations: 22,
-        window: Window::Pixels,
+        window: Window::Radii(0.5),
         range: 2.0 * core::f32::consts::SQRT_2,
+    };
+
+    /// As published: 7×7 pixels, 22 times.
+    pub const THESIS: Self = Self {
+        window: Window::Pixels,
+        ..Self::DEFAULT
     };
 }
 
 impl Default for Bilateral {
     fn default() -> Self {
-        Self::THESIS
+        Self::DEFAULT
     }
 }
 
@@ -344,7 +348,9 @@ pub enum FluidDebugView {
     Normals,
     /// How many interfaces each ray met: 0 black, 1 blue, 2 green, 3 yellow, 4 red.
     Interfaces,
-    /// How the searches ended: green all hit, others see `SearchStatus` in `types.wgsl`.
+    /// How the searches ended: green all hit, blue no further interface, yellow the ray left the
+    /// layer or the screen, red nothing to search in, violet total reflection, orange the
+    /// evaluations ran out, grey an opaque surface was met.
     Status,
     /// Bulk blue, spray orange.
     Classes,

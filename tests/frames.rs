@@ -114,6 +114,13 @@ fn without_liquid_in_view_the_picture_is_bevys_own() {
     assert!(picture(&mut app) == plain, "hidden");
     pour(&mut app, pool());
     assert!(picture(&mut app) != plain, "in view");
+    let camera = only::<ScreenSpaceFluid>(&mut app);
+    app.world_mut()
+        .entity_mut(camera)
+        .remove::<ScreenSpaceFluid>();
+    step(&mut app, 1);
+    assert!(view_bodies(&app).is_none());
+    assert!(picture(&mut app) == plain, "a camera that draws no fluids");
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) frames: u32,
     /// Write a picture (PNG) instead of opening a window
-    #[arg(long)]
+    #[arg(long, value_parser = png)]
     pub(crate) out: Option<PathBuf>,
     /// Write counts and times (JSON)
     #[arg(long)]
@@ -130,7 +130,7 @@ impl Args {
                 SmoothingArg::PlaneFitTls => plane(PlaneFitForm::TotalLeastSquares),
                 SmoothingArg::PlaneFit => plane(PlaneFitForm::DeviceDepth),
                 SmoothingArg::PlaneFitSeparable => plane(PlaneFitForm::Separable),
-                SmoothingArg::Bilateral => Smoothing::Bilateral(Bilateral::THESIS),
+                SmoothingArg::Bilateral => Smoothing::Bilateral(Bilateral::DEFAULT),
                 SmoothingArg::NormalAverage => Smoothing::NormalAverage(default()),
                 SmoothingArg::NarrowRange => Smoothing::NarrowRange(default()),
                 SmoothingArg::CurvatureFlow => Smoothing::CurvatureFlow(default()),
@@ -164,6 +164,14 @@ impl Args {
             DebugViewArg::Status => FluidDebugView::Status,
             DebugViewArg::Classes => FluidDebugView::Classes,
         })
+    }
+}
+
+fn png(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(path),
+        _ => Err("must end in .png".into()),
     }
 }
 

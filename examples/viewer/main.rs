@@ -15,9 +15,7 @@ use std::process::ExitCode;
 
 use anyhow::anyhow;
 use bevy::prelude::*;
-use fluid_stage::{
-    PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle, step,
-};
+use fluid_stage::{PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle};
 
 use crate::{args::Args, scene::ScenePlugin};
 
@@ -63,13 +61,13 @@ fn run(args: &Args) -> anyhow::Result<ExitCode> {
     })?;
     settle(&mut app)?;
     set_time_step(&mut app, std::time::Duration::from_secs_f64(1.0 / 60.0));
-    step(&mut app, args.frames);
+    let shape_times = stats::step(&mut app, args.frames, stats_file.is_some());
     let image = capture(&mut app)?;
     if let Some(picture) = picture {
         picture.commit(image)?;
     }
     if let Some(path) = stats_file {
-        let stats = stats::gather(&app)?;
+        let stats = stats::gather(&app, &shape_times)?;
         std::fs::write(path, stats)
             .map_err(|error| anyhow!("cannot write {}: {error}", path.display()))?;
     }

@@ -94,6 +94,7 @@ fn setup(mut scenery: Scenery, scene: Res<ScenePlugin>) {
         Projection::Perspective(PerspectiveProjection {
             fov: scene.fov,
             near: 0.02 * distance.min(size.max_element()),
+            far: 4.0 * distance + 4.0 * reach,
             ..default()
         })
     };

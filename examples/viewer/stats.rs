@@ -1,10 +1,10 @@
 //! Counts and times as JSON.
 
-use std::path::Path;
+use std::{path::Path, time::Duration};
 
 use anyhow::{Context, anyhow};
-use bevy::{prelude::*, render::RenderApp};
-use bevy_fluid::{FluidParticles, ShapedFluid, render::ViewBodies};
+use bevy::{diagnostic::DiagnosticsStore, prelude::*, render::RenderApp};
+use bevy_fluid::{FluidParticles, ShapedFluid, render::ViewBodies, shape::ShapeTimes};
 use fluid_stage::{Stage, adapter_name, median_gpu_ms, read_texture};
 use serde::Serialize;
 
@@ -53,14 +53,49 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<&Path> {
         .ok_or_else(|| anyhow!("cannot write {}: no such folder", path.display()))
 }
 
-pub(crate) fn gather(app: &App) -> anyhow::Result<String> {
+/// Steps `frames` frames. To `measure`, the particles count as changed in each of them, so that
+/// each has them shaped, and what was timed before is forgotten.
+pub(crate) fn step(app: &mut App, frames: u32, measure: bool) -> Vec<ShapeTimes> {
+    if !measure {
+        fluid_stage::step(app, frames);
+        return Vec::new();
+    }
+    for diagnostic in app
+        .world_mut()
+        .resource_mut::<DiagnosticsStore>()
+        .iter_mut()
+    {
+        diagnostic.clear_history();
+    }
+    let mut fluids = app
+        .world_mut()
+        .query::<(&mut FluidParticles, &ShapedFluid)>();
+    let mut times = Vec::new();
+    for _ in 0..frames {
+        for (mut particles, _) in fluids.iter_mut(app.world_mut()) {
+            particles.set_changed();
+        }
+        fluid_stage::step(app, 1);
+        times.extend(fluids.iter(app.world()).map(|(_, shaped)| shaped.times()));
+    }
+    times
+}
+
+/// In milliseconds.
+fn median(times: &[ShapeTimes], part: fn(&ShapeTimes) -> Duration) -> f64 {
+    let mut parts: Vec<_> = times.iter().map(part).collect();
+    parts.sort_unstable();
+    parts
+        .get(parts.len() / 2)
+        .map_or(0.0, |time| 1e3 * time.as_secs_f64())
+}
+
+pub(crate) fn gather(app: &App, times: &[ShapeTimes]) -> anyhow::Result<String> {
     let (particles, shaped) = app
         .world()
         .iter_entities()
         .find_map(|e| Some((e.get::<FluidParticles>()?, e.get::<ShapedFluid>()?)))
         .context("there is no fluid")?;
-    let times = shaped.times();
-    let ms = |time: std::time::Duration| 1e3 * time.as_secs_f64();
     let gpu = |pass: &str| median_gpu_ms(app, &format!("render/fluid_{pass}/elapsed_gpu"));
     let size = app.world().resource::<Stage>().size;
     let stats = Stats {
@@ -74,10 +109,10 @@ pub(crate) fn gather(app: &App) -> anyhow::Result<String> {
         fluid_pixels: fluid_pixels(app)?,
         adapter: adapter_name(app),
         cpu_ms: CpuTimes {
-            shape: ms(times.total),
-            grid: ms(times.grid),
-            classify: ms(times.classify),
-            anisotropy: ms(times.anisotropy),
+            shape: median(times, |times| times.total),
+            grid: median(times, |times| times.grid),
+            classify: median(times, |times| times.classify),
+            anisotropy: median(times, |times| times.anisotropy),
         },
         gpu_ms: GpuTimes {
             splat: gpu("splat"),

@@ -75,6 +75,10 @@ pub(crate) fn prepare_body_bind_groups(
             view.multisampled,
             prepass_depth,
         ));
+        let scene_depth_ready = sources
+            .scene_depth
+            .pipeline(&sources.cache, view.multisampled)
+            .is_some();
         let scene_depth = view.scene_depth.default_view.clone();
         let scene_color = view
             .scene_color
@@ -101,7 +105,7 @@ pub(crate) fn prepare_body_bind_groups(
                 Some(color) => Some(sources.composite(body, color)),
                 None => sources.debug(body),
             };
-            body.mark_ready(&sources.cache);
+            body.mark_ready(&sources.cache, scene_depth_ready);
         }
     }
 }

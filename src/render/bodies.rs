@@ -86,8 +86,8 @@ impl Body {
     }
 
     /// Called once the bind groups are there: a body whose pipelines still compile waits.
-    pub(crate) fn mark_ready(&mut self, cache: &PipelineCache) {
-        self.ready = self.groups.common.is_some() && self.pipelines.ready(cache);
+    pub(crate) fn mark_ready(&mut self, cache: &PipelineCache, scene_depth: bool) {
+        self.ready = scene_depth && self.groups.common.is_some() && self.pipelines.ready(cache);
     }
 }
 
@@ -148,6 +148,7 @@ pub(crate) fn prepare_bodies(
         Option<&FluidDebugView>,
         Option<&MainPassResolutionOverride>,
     )>,
+    stale: Query<Entity, With<ViewBodies>>,
     fluids: Query<(Entity, &ExtractedFluid)>,
     lights: Res<FluidLights>,
     images: Res<RenderAssets<GpuImage>>,
@@ -162,10 +163,13 @@ pub(crate) fn prepare_bodies(
 ) {
     uniforms.bodies.clear();
     uniforms.depth_ranges.clear();
+    // Also of cameras that draw no fluids any more, or rest.
+    for entity in &stale {
+        commands.entity(entity).remove::<ViewBodies>();
+    }
     for (entity, view, camera, offset, msaa, settings, surroundings, debug_view, resolution) in
         &views
     {
-        commands.entity(entity).remove::<ViewBodies>();
         let Some(target_size) = camera.physical_target_size else {
             continue;
         };
@@ -197,7 +201,7 @@ pub(crate) fn prepare_bodies(
             };
             let planned = plan(&PlanInput {
                 in_view: scissor.is_some(),
-                eye_in_bounds: bounds.contains(eye),
+                near_plane_cuts: bounds.near_plane_cuts(&clip_from_world),
                 bulk: count(|fluid| fluid.bulk),
                 interior: count(|fluid| fluid.interior),
                 spray: count(|fluid| fluid.spray),

@@ -26,8 +26,13 @@ impl Bounds {
         }
     }
 
-    pub(crate) fn contains(&self, point: Vec3) -> bool {
-        self.min.cmple(point).all() && self.max.cmpge(point).all()
+    /// Whether a part of the box is nearer than the near plane, or behind the eye.
+    pub(crate) fn near_plane_cuts(&self, clip_from_world: &Mat4) -> bool {
+        !self.is_empty()
+            && self.corners().into_iter().any(|p| {
+                let clip = *clip_from_world * p.extend(1.0);
+                clip.w <= 1e-6 || clip.z > clip.w
+            })
     }
 
     pub(crate) fn center(&self) -> Vec3 {
@@ -78,8 +83,8 @@ impl Bounds {
         let origin = viewport.xy();
         let size = viewport.zw();
         let whole = URect::from_corners(origin, origin + size);
-        // Part of it is behind the eye: its projection has no bound.
-        if clip.iter().any(|c| c.w <= 1e-6 || c.z > c.w) {
+        // Its projection has no bound.
+        if self.near_plane_cuts(clip_from_world) {
             return Some(whole);
         }
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);

@@ -89,6 +89,7 @@ pub(crate) struct EnvironmentMap {
 }
 
 /// What a view sees beside the fluid.
+#[doc(hidden)]
 #[derive(Component, Clone)]
 pub struct ViewSurroundings {
     pub(crate) map: Option<EnvironmentMap>,
@@ -119,6 +120,7 @@ pub(crate) fn extract_lights(
 }
 
 /// A fluid in the render world: where it is, what it is made of and its splats.
+#[doc(hidden)]
 #[derive(Component, Default)]
 pub struct ExtractedFluid {
     pub(crate) transform: GlobalTransform,
@@ -165,7 +167,7 @@ pub(crate) fn extract_fluids(
             QueryState<(
                 RenderEntity,
                 &GlobalTransform,
-                &FluidMaterial,
+                Option<&FluidMaterial>,
                 &FluidParticles,
                 &InheritedVisibility,
                 Option<&RenderLayers>,
@@ -187,7 +189,7 @@ pub(crate) fn extract_fluids(
             None => new.insert(ExtractedFluid::default()),
         };
         fluid.transform = *transform;
-        fluid.material = *material;
+        fluid.material = material.copied().unwrap_or_default();
         fluid.visible = visibility.get();
         fluid.radius = particles.radius * mean_scale(transform);
         fluid
@@ -225,13 +227,20 @@ fn mean_scale(transform: &GlobalTransform) -> f32 {
     }
 }
 
+/// After a device was lost its buffers are gone; the splats are still here.
+pub(crate) fn forget_buffers(mut fluids: Query<&mut GpuSplats>) {
+    for mut gpu in &mut fluids {
+        gpu.buffer = None;
+        gpu.bind_group = None;
+    }
+}
+
 pub(crate) fn upload_splats(
     mut fluids: Query<(&mut ExtractedFluid, &mut GpuSplats)>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
 ) {
     for (mut fluid, mut gpu) in &mut fluids {
-        // A lost device takes its buffers along; the splats are still here.
         if !fluid.fresh && (gpu.buffer.is_some() || fluid.splats.is_empty()) {
             continue;
         }

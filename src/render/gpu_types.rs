@@ -77,7 +77,7 @@ impl GpuBody {
             Smoothing::CurvatureFlow(flow) => (0.0, flow.range, UNBOUND),
         };
         let flow_step = match *smoothing {
-            Smoothing::CurvatureFlow(flow) => positive(flow.step, 0.0).min(0.5),
+            Smoothing::CurvatureFlow(flow) => positive(flow.step, 0.4).clamp(0.01, 0.5),
             _ => 0.0,
         };
         Self {
@@ -86,14 +86,14 @@ impl GpuBody {
             perceptual_roughness: positive(material.perceptual_roughness, 0.1).clamp(0.03, 1.0),
             radius,
             window_radii: window,
-            range: positive(range, 2.0) * radius,
-            bound: positive(bound, 2.0) * radius,
+            range: positive(range, 2.0).clamp(0.5, 20.0) * radius,
+            bound: positive(bound, 2.0).max(0.1) * radius,
             flow_step,
             coarse_samples: match settings.search {
                 Search::Secant => 0,
                 Search::Bracketed { coarse_samples } => coarse_samples.min(32),
             },
-            contact: positive(settings.contact, 0.0) * radius,
+            contact: positive(settings.contact, 0.0).min(8.0) * radius,
             ..default()
         }
     }

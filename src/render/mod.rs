@@ -100,6 +100,7 @@ impl Plugin for FluidRenderPlugin {
                 RenderStartup,
                 (
                     support::init_support,
+                    extract::forget_buffers,
                     scene_textures::init_placeholders,
                     scene_depth::init_scene_depth_pipelines,
                     (splat::init_splat_pipeline, normals::init_normals_pipeline).chain(),

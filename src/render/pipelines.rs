@@ -88,7 +88,8 @@ impl Pipelines<'_> {
             }
         };
         let bulk_normals = match plan.smoothing {
-            _ if !plan.bulk || steps.yields_normals() => BulkNormals::Smoothed,
+            // What bends nothing needs no normals.
+            _ if !plan.bulk || plan.index_one || steps.yields_normals() => BulkNormals::Smoothed,
             Smoothing::NormalAverage(average) => BulkNormals::Averaged {
                 splats: self.normals(NormalSource::Ellipsoids),
                 average: self.normals(NormalSource::Average {
@@ -109,7 +110,8 @@ impl Pipelines<'_> {
             splat,
             smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
             bulk_normals,
-            spray_normals: plan.spray.then(|| self.normals(NormalSource::Ellipsoids)),
+            spray_normals: (plan.spray && !plan.index_one)
+                .then(|| self.normals(NormalSource::Ellipsoids)),
             refract: self
                 .refracts
                 .specialize(&self.cache, &self.refract, refract),

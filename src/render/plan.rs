@@ -7,8 +7,8 @@ use crate::settings::{ScreenSpaceFluid, Smoothing};
 pub struct PlanInput {
     /// Whether the body's bounding box touches the view's frustum.
     pub in_view: bool,
-    /// Whether the eye is within the bounding box.
-    pub eye_in_bounds: bool,
+    /// Whether the near plane cuts the bounding box, so that rays may start inside.
+    pub near_plane_cuts: bool,
     /// Particles of the bulk near its surface.
     pub bulk: u32,
     /// Particles of the bulk that no surface passes through.
@@ -28,7 +28,7 @@ pub struct Plan {
     pub bulk: bool,
     /// The spray's layers are drawn.
     pub spray: bool,
-    /// Interior particles are drawn too. They are hidden unless the eye is among them.
+    /// Interior particles are drawn too. They are hidden unless rays start among them.
     pub interior: bool,
     /// How the bulk is smoothed.
     pub smoothing: Smoothing,
@@ -40,14 +40,13 @@ pub struct Plan {
 
 /// The plan for a body in a view; `None` if there is nothing to draw.
 pub fn plan(input: &PlanInput) -> Option<Plan> {
-    let interior = input.interior > 0 && input.eye_in_bounds;
+    let interior = input.interior > 0 && input.near_plane_cuts;
     let bulk = input.bulk > 0 || interior;
     let spray = input.spray > 0;
     if !input.in_view || !(bulk || spray) {
         return None;
     }
     let index_one = (input.refractive_index - 1.0).abs() < 1e-6;
-    let wanted = input.settings.refractions.count();
     Some(Plan {
         bulk,
         spray,
@@ -57,13 +56,11 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
         } else {
             Smoothing::None
         },
+        // One class has but one front and one back, but total reflection may want the rest.
         interfaces: if index_one {
             0
-        } else if bulk && spray {
-            wanted
         } else {
-            // One class has one front and one back.
-            wanted.min(2)
+            input.settings.refractions.count()
         },
         index_one,
     })
@@ -75,7 +72,7 @@ mod tests {
 
     const POOL: PlanInput = PlanInput {
         in_view: true,
-        eye_in_bounds: false,
+        near_plane_cuts: false,
         bulk: 100,
         interior: 50,
         spray: 3,
@@ -107,14 +104,14 @@ mod tests {
     }
 
     #[test]
-    fn without_spray_two_interfaces() {
+    fn without_spray_no_spray_layers_but_the_whole_budget() {
         let plan = plan(&PlanInput { spray: 0, ..POOL }).unwrap();
         assert!(plan.bulk && !plan.spray);
-        assert_eq!(plan.interfaces, 2);
+        assert_eq!(plan.interfaces, 4);
     }
 
     #[test]
-    fn without_bulk_no_smoothing_and_two_interfaces() {
+    fn without_bulk_no_smoothing() {
         let only_spray = PlanInput {
             bulk: 0,
             interior: 0,
@@ -122,7 +119,7 @@ mod tests {
         };
         let plan = plan(&only_spray).unwrap();
         assert!(!plan.bulk && plan.spray);
-        assert_eq!((plan.smoothing, plan.interfaces), (Smoothing::None, 2));
+        assert_eq!(plan.smoothing, Smoothing::None);
     }
 
     #[test]
@@ -137,9 +134,9 @@ mod tests {
     }
 
     #[test]
-    fn interiors_are_drawn_only_for_an_eye_among_them() {
+    fn interiors_are_drawn_only_for_rays_that_start_among_them() {
         let input = PlanInput {
-            eye_in_bounds: true,
+            near_plane_cuts: true,
             ..POOL
         };
         assert!(plan(&input).unwrap().interior);

@@ -2,8 +2,8 @@
 
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{
-    decode_normal, device_from_view, has_back, nearest_scene_depth, ndc_from_pixel,
-    pixel_from_ndc, view_from_device,
+    decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth, ndc_from_pixel,
+    pixel_from_ndc, view_depth, view_from_device,
 }
 #import bevy_fluid::render::optics::environment
 #import bevy_fluid::render::types::INSIDE_FRONT
@@ -40,8 +40,6 @@ fn color_at(pixel: vec2<f32>) -> vec3<f32> {
 struct Track {
     start: vec3<f32>,
     end: vec3<f32>,
-    // Whether `end` is infinitely far away (or beyond an orthographic far plane).
-    complete: bool,
 }
 
 // Along a ray the screen position and the device depth are affine in each other.
@@ -53,7 +51,8 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
         end = clip.xyz / clip.w;
     } else {
         // Parallel to the screen, towards the eye, or orthographic: as far as the depths go.
-        let t = select(1e4, start.z / -clip.z, clip.z < 0.0 && clip.w >= 0.0);
+        let far = 1e3 * (abs(position.z) + body.radius);
+        let t = select(far, start.z / -clip.z, clip.z < 0.0 && clip.w >= 0.0);
         end = device_from_view(position + t * direction);
         if clip.w < 0.0 {
             end = start;
@@ -64,7 +63,7 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
     let border = select(vec2(-1.0), vec2(1.0), way.xy >= vec2(0.0));
     let reach = select(vec2(1e9), (border - start.xy) / way.xy, abs(way.xy) > vec2(1e-9));
     let fraction = clamp(min(reach.x, reach.y), 0.0, 1.0);
-    return Track(start, start + fraction * way, fraction >= 1.0);
+    return Track(start, start + fraction * way);
 }
 
 fn pixel_on(track: Track, s: f32) -> vec2<f32> {
@@ -80,6 +79,7 @@ fn scene_on(track: Track, s: f32) -> f32 {
 // The scene's colour where the ray meets its depth, else the environment.
 fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
     let way = track(position, direction);
+    let map = depth_map(way.start.xy);
     let pixels = length(pixel_on(way, 1.0) - pixel_on(way, 0.0));
     let steps = clamp(ceil(pixels / STEP_PIXELS), 4.0, MAX_STEPS);
     var before = 0.0;
@@ -89,9 +89,9 @@ fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
         let scene_depth = scene_on(way, s);
         // Reverse z: behind something. It is met if it lies within the step, not if it covers
         // the ray from nearer the eye.
-        let entry = mix(way.start.z, way.end.z, before);
-        let slack = 0.05 * entry;
-        if scene_depth > ray_depth && scene_depth <= entry + slack {
+        let entry = view_depth(map, mix(way.start.z, way.end.z, before));
+        let slack = 4.0 * body.radius + 0.05 * entry;
+        if scene_depth > ray_depth && view_depth(map, scene_depth) >= entry - slack {
             var low = before;
             for (var k = 0; k < REFINEMENTS; k += 1) {
                 let middle = 0.5 * (low + s);

@@ -15,7 +15,7 @@
 
 fn shade(there: bool, d: f32, position: vec2<f32>) -> vec3<f32> {
     if !there {
-        return vec3(0.02, 0.02, 0.05);
+        discard;
     }
     let z = view_depth(depth_map(ndc_from_pixel(position)), d);
     return vec3(mix(1.0, 0.08, clamp((z - depth_range.x) / (depth_range.y - depth_range.x), 0.0, 1.0)));
@@ -40,8 +40,8 @@ fn worst(status: u32) -> u32 {
     var out = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
         let s = (status >> (4u * i)) & 15u;
-        // A hit is no news.
-        if s > 1u || out == 0u {
+        // A hit is no news, and an opaque surface met is none either.
+        if (s > 1u && s < 7u) || out <= 1u {
             out = max(out, s);
         }
     }

@@ -16,6 +16,15 @@
 }
 
 const INTERFACES: u32 = #{INTERFACES}u;
+#ifdef BULK_LAYERS
+#ifdef SPRAY_LAYERS
+const HAS_BOTH: bool = true;
+#else
+const HAS_BOTH: bool = false;
+#endif
+#else
+const HAS_BOTH: bool = false;
+#endif
 
 struct Output {
     // What the liquid itself sends: reflections and highlights.
@@ -88,24 +97,37 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     return true;
 }
 
-// The straight way through one kind at its own pixel, cut short by opaque things.
-fn straight_length(kind: u32, pixel: vec2<i32>, ndc: vec2<f32>, along: vec3<f32>) -> f32 {
-    let layers = load_layers(kind, pixel);
+// (front, back) of one class at a pixel in device depth, cut short by opaque things.
+fn straight_span(layers: vec2<f32>, pixel: vec2<i32>) -> vec2<f32> {
     if !has_front(layers) || !has_back(layers) {
+        return vec2(0.0);
+    }
+    return vec2(layers.x, min(max(-layers.y, nearest_scene_depth(pixel)), layers.x));
+}
+
+// The straight way through the liquid at a pixel; where bulk and spray overlap it counts once.
+fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
+    let bulk = straight_span(load_layers(BULK, pixel), pixel);
+    let spray = straight_span(load_layers(SPRAY, pixel), pixel);
+    let both = vec2(min(bulk.x, spray.x), max(bulk.y, spray.y));
+    var length = span_length(bulk, ndc) + span_length(spray, ndc);
+    if both.x > both.y {
+        length -= span_length(both, ndc);
+    }
+    return length;
+}
+
+fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
+    if span.x <= 0.0 {
         return 0.0;
     }
-    let back = max(-layers.y, nearest_scene_depth(pixel));
-    if back >= layers.x {
-        return 0.0;
-    }
-    let span = view_from_device(ndc, back) - view_from_device(ndc, layers.x);
-    return max(dot(span, along), 0.0);
+    return distance(view_from_device(ndc, span.y), view_from_device(ndc, span.x));
 }
 
 // Follows the path inside and outside until the budget is spent or nothing more is met.
-fn trace(path: ptr<function, Path>, starts_inside: bool, other: bool) {
+fn trace(path: ptr<function, Path>) {
     var both = false;
-    var may_enter = other;
+    var may_enter = HAS_BOTH;
     for (var segment = 0u; segment < INTERFACES; segment += 1u) {
         if (*path).interfaces >= INTERFACES {
             return;
@@ -193,15 +215,14 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 
 #ifdef INDEX_ONE
     path.direct = true;
-    let straight = straight_length(BULK, pixel, ndc, ray.direction)
-        + straight_length(SPRAY, pixel, ndc, ray.direction);
-    path.transmission = transmitted(straight);
+    path.transmission = transmitted(straight_length(pixel, ndc));
     path.interfaces = 0u;
 #else
+    var entered = true;
     if !starts_inside {
         let n = facing(first_normal, ray.direction);
         path.radiance = highlights(ray.direction, n);
-        let entered = cross_interface(&path, n, true);
+        entered = cross_interface(&path, n, true);
         if !entered {
             // Total reflection outside: only the mirrored surroundings are seen.
             path.radiance += environment(path.direction);
@@ -210,8 +231,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
     if INTERFACES <= 1u {
         // No search: the path is as long as the liquid is deep at this pixel.
-        let straight = straight_length(BULK, pixel, ndc, ray.direction)
-            + straight_length(SPRAY, pixel, ndc, ray.direction);
+        let straight = straight_length(pixel, ndc);
         path.transmission *= transmitted(straight);
         if INTERFACES == 0u {
             path.direction = ray.direction;
@@ -220,9 +240,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
         } else {
             advance(&path, straight);
         }
-    } else {
-        let other = 1u - path.kind;
-        trace(&path, starts_inside, has_front(load_layers(other, pixel)) || INTERFACES > 2u);
+    } else if entered {
+        trace(&path);
     }
 #endif
     if path.direct && INTERFACES <= 1u {

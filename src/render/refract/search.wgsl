@@ -184,8 +184,10 @@ fn search_bracketed(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: 
         step = 2.0 * guess / f32(body.coarse_samples);
         left += i32(body.coarse_samples);
     }
+    // The last three evaluations are kept for refining.
+    let expansions = left - 3;
     var bracketed = false;
-    for (var i = 0; i < left; i += 1) {
+    for (var i = 0; i < expansions; i += 1) {
         let t = b.low + step;
         let gap = gap_at(to, origin + t * direction);
         left -= 1;
@@ -213,11 +215,13 @@ fn search_bracketed(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: 
     return refine(to, origin, direction, b, left);
 }
 
-// The thesis's secant (3.12): the line through the last two gaps; distances are halved while
+// The thesis's secant (3.12): the line through two gaps; distances are halved while
 // there is no layer.
 fn search_secant(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: Gap, guess: f32) -> Found {
     var t0 = 0.0;
     var g0 = start.value;
+    // Without a layer at the start there is no gap to draw a line through yet.
+    var has_first = start.known;
     var t1 = guess;
     var g1 = start;
     g1.known = false;
@@ -232,12 +236,13 @@ fn search_secant(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: Gap
             return Found(STATUS_HIT, t1, gap.side);
         }
         let slope = gap.value - g0;
-        let next = select(t1 - gap.value * (t1 - t0) / slope, 2.0 * t1, slope == 0.0);
-        // The one that is farther off is replaced.
-        if abs(gap.value) <= abs(g0) || !has_second {
+        let next = select(t1 - gap.value * (t1 - t0) / slope, 2.0 * t1, slope == 0.0 || !has_first);
+        // "Either" of the two is replaced: we replace the one that is farther off.
+        if abs(gap.value) <= abs(g0) || !has_second || !has_first {
             t0 = t1;
             g0 = gap.value;
         }
+        has_first = true;
         has_second = true;
         t1 = max(next, 0.0);
         g1 = gap;
@@ -260,8 +265,8 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
         if to.both {
             // On a surface by construction: take the first step on trust.
             inside.value = min(inside.value, -0.01 * body.radius);
-            let back = layer_depth(to.kind, BACK, pixel_of(origin));
-            let front = layer_depth(to.kind, FRONT, pixel_of(origin));
+            let back = layer_depth(to.kind, BACK, clamp_to_view(pixel_of(origin)));
+            let front = layer_depth(to.kind, FRONT, clamp_to_view(pixel_of(origin)));
             guess = max(guess, select(0.0, back.z - front.z, front.there));
         } else {
             if start.value >= -tolerance(origin) {
@@ -303,7 +308,7 @@ fn meets_scene(origin: vec3<f32>, direction: vec3<f32>, t: f32) -> Found {
         return Found(STATUS_NO_BRACKET, t, FRONT);
     }
     var before = start;
-    before.value = min(before.value, -1e-6);
+    before.value = min(before.value, -1e-3 * body.radius);
     let found = refine(to, origin, direction, Bracket(0.0, before, t, end), EVALUATIONS);
     let gap = gap_at(to, origin + found.t * direction);
     let met = gap.known && abs(gap.value) <= body.radius;

@@ -8,8 +8,8 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, RenderPipelineDescriptor,
-            ShaderStages, TextureFormat, TextureView,
+            CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, ShaderStages, TextureFormat, TextureView,
             binding_types::{texture_depth_2d, texture_depth_2d_multisampled},
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
@@ -67,6 +67,14 @@ pub(crate) fn init_scene_depth_pipelines(
 }
 
 impl SceneDepthPipelines {
+    pub(crate) fn pipeline<'a>(
+        &self,
+        cache: &'a PipelineCache,
+        multisampled: bool,
+    ) -> Option<&'a RenderPipeline> {
+        cache.get_render_pipeline(self.pipelines[usize::from(multisampled)])
+    }
+
     pub(crate) fn bind_group(
         &self,
         device: &RenderDevice,
@@ -90,9 +98,8 @@ pub(crate) fn scene_depth(
     mut ctx: RenderContext,
 ) {
     let view = view.into_inner();
-    let id = pipelines.pipelines[usize::from(view.multisampled)];
-    let (Some(pipeline), Some(group)) = (cache.get_render_pipeline(id), &view.scene_depth_group)
-    else {
+    let pipeline = pipelines.pipeline(&cache, view.multisampled);
+    let (Some(pipeline), Some(group)) = (pipeline, &view.scene_depth_group) else {
         return;
     };
     let recorder = ctx.diagnostic_recorder();

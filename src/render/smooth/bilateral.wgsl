@@ -1,4 +1,4 @@
-// A bilateral filter of view depth: thesis 3.1.
+// A bilateral filter of view depth: thesis 3.2, equation 3.1.
 
 #import bevy_fluid::render::functions::device_depth
 #import bevy_fluid::render::smooth::window::{

@@ -38,15 +38,18 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let c = 2.0 / (view.main_pass_viewport.zw * vec2(view.clip_from_view[0][0], view.clip_from_view[1][1]));
     let cx2 = c.x * c.x;
     let cy2 = c.y * c.y;
-    let d = cy2 * zx * zx + cx2 * zy * zy + cx2 * cy2 * z * z;
-    let dx = 2.0 * (cy2 * zx * zxx + cx2 * zy * zxy + cx2 * cy2 * z * zx);
-    let dy = 2.0 * (cy2 * zx * zxy + cx2 * zy * zyy + cx2 * cy2 * z * zy);
+    // A pixel grows with depth in perspective only.
+    let grows = select(1.0, 0.0, view.clip_from_view[3][3] == 1.0);
+    let s = mix(vec2(1.0), z, grows);
+    let d = cy2 * zx * zx + cx2 * zy * zy + cx2 * cy2 * s * s;
+    let dx = 2.0 * (cy2 * zx * zxx + cx2 * zy * zxy + cx2 * cy2 * s * zx * grows);
+    let dy = 2.0 * (cy2 * zx * zxy + cx2 * zy * zyy + cx2 * cy2 * s * zy * grows);
     let ex = 0.5 * zx * dx - zxx * d;
     let ey = 0.5 * zy * dy - zyy * d;
     let h = (c.y * ex + c.x * ey) / (2.0 * max(d, vec2(1e-30)) * sqrt(max(d, vec2(1e-30))));
     // The paper's curvature is taken by the pixel: per metre it is h over the pixel's footprint,
     // and the steps are in units of that footprint squared, where an explicit flow is stable.
-    let moved = z - body.flow_step * h * 0.5 * (c.x + c.y) * z;
+    let moved = z - body.flow_step * h * 0.5 * (c.x + c.y) * s;
     let fitted = vec2(device_depth(window.map, moved.x), -device_depth(window.map, moved.y));
     return vec4(accept(window, fitted, vec2(true)), 0.0, 0.0);
 }

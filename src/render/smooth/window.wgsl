@@ -67,6 +67,9 @@ fn window_at(position: vec2<f32>) -> Window {
 // How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
 // window grows by a pixel.
 fn edge_weight(window: Window, tap: i32) -> f32 {
+    if body.window_radii <= 0.0 {
+        return 1.0;
+    }
     return clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
 }
 
