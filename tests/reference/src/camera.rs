@@ -46,11 +46,14 @@ impl Camera {
         }
     }
 
-    /// The same camera at `eye`, looking at `target`, as `Transform::looking_at` turns it with
-    /// +y upwards (+z where it looks along y).
+    /// The same camera at `eye`, looking at `target`, turned as `Transform::looking_at` of
+    /// Bevy turns it with +y upwards.
     pub fn looking_at(self, eye: DVec3, target: DVec3) -> Self {
         let back = (eye - target).normalize();
-        let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
+        let right = DVec3::Y
+            .cross(back)
+            .try_normalize()
+            .unwrap_or_else(|| DVec3::Y.any_orthonormal_vector());
         let axes = glam::DMat3::from_cols(right, back.cross(right), back);
         Self {
             world_from_view: DAffine3::from_rotation_translation(DQuat::from_mat3(&axes), eye),

@@ -16,8 +16,8 @@ use triangle::Triangle;
 pub struct Sheet {
     /// Reverse device depth; `None` where the layer is not there.
     pub depth: Image<Option<f64>>,
-    /// Outward normals in world space; if none are given, those of the triangles around each
-    /// pixel are averaged.
+    /// Outward normals in world space, of the depths' size. If none are given they are those of
+    /// the differences between neighbours; where one is missing, of the triangle.
     pub normals: Option<Image<Option<DVec3>>>,
 }
 
@@ -64,11 +64,7 @@ impl LayerMeshes {
         let mut triangles = Vec::new();
         for (body, layer) in layers.iter().enumerate() {
             for (sheet, front) in [(&layer.front, true), (&layer.back, false)] {
-                let mut of_sheet = triangle::triangulate(camera, sheet, step, front);
-                for triangle in &mut of_sheet {
-                    triangle.body = body;
-                }
-                triangles.append(&mut of_sheet);
+                triangles.extend(triangle::triangulate(camera, sheet, body, step, front));
             }
         }
         let depths = layers.iter().map(|layer| {

@@ -36,8 +36,8 @@ impl Triangle {
         let u = from.dot(across) / det;
         let v = ray.direction.dot(side) / det;
         let w = 1.0 - u - v;
-        // Not a number where the ray lies in the plane.
-        if !(u.min(v).min(w) >= -SLACK) {
+        // None is a number where the ray lies in the plane.
+        if ![u, v, w].iter().all(|&part| part >= -SLACK) {
             return None;
         }
         let [na, nb, nc] = self.normals;
@@ -50,60 +50,64 @@ impl Triangle {
     }
 }
 
-/// A vertex and the sum of the normals around it.
+/// A vertex.
 #[derive(Clone, Copy)]
 struct Corner {
     at: DVec3,
     depth: f64,
-    normal: DVec3,
 }
 
 /// The triangles of one sheet; a front's normals point to the viewer, a back's away.
-pub(super) fn triangulate(camera: &Camera, sheet: &Sheet, step: f64, front: bool) -> Vec<Triangle> {
+pub(super) fn triangulate(
+    camera: &Camera,
+    sheet: &Sheet,
+    body: usize,
+    step: f64,
+    front: bool,
+) -> Vec<Triangle> {
     let corners = Image::from_fn(camera.size, |pixel| {
         let depth = view_depth(camera, sheet, pixel).filter(|depth| depth.is_finite())?;
-        let given = |normals: &Image<Option<DVec3>>| *normals.get(pixel);
-        Some(Corner {
-            at: camera.unproject(pixel.as_dvec2() + 0.5, depth),
-            depth,
-            normal: sheet
-                .normals
-                .as_ref()
-                .and_then(given)
-                .unwrap_or(DVec3::ZERO),
-        })
+        let at = camera.unproject(pixel.as_dvec2() + 0.5, depth);
+        Some(Corner { at, depth })
     });
-    let faces = faces(camera.size, &corners, step);
-    let outward = |[a, b, c]: [usize; 3]| {
-        let [a, b, c] = [a, b, c].map(|i| corners.pixels()[i].map_or(DVec3::ZERO, |c| c.at));
-        // Faces are wound clockwise on screen, so this points to the viewer.
-        let plane = (c - a).cross(b - a);
-        if front { plane } else { -plane }
-    };
-    let mut around = corners
-        .map(|corner| corner.map_or(DVec3::ZERO, |corner| corner.normal))
-        .pixels()
-        .to_vec();
-    if sheet.normals.is_none() {
-        for &face in &faces {
-            for corner in face {
-                // As long as the face is large.
-                around[corner] += outward(face);
-            }
+    let outward = |to_viewer: DVec3| if front { to_viewer } else { -to_viewer };
+    let normals = Image::from_fn(camera.size, |pixel| {
+        let given = sheet.normals.as_ref().map(|normals| normals.get(pixel));
+        match given {
+            Some(given) => given.and_then(DVec3::try_normalize),
+            None => normal(&corners, pixel, step).map(outward),
         }
-    }
+    });
     let triangle = |face: [usize; 3]| {
-        let plane = outward(face);
-        let normal = |i: usize| around[i].try_normalize().unwrap_or(plane.normalize());
         let at = |i: usize| corners.pixels()[i].map(|corner| corner.at);
+        let [a, b, c] = [at(face[0])?, at(face[1])?, at(face[2])?];
+        // Faces are wound clockwise on screen, so this points to the viewer.
+        let plane = outward((c - a).cross(b - a));
+        let normal = |i: usize| normals.pixels()[i].unwrap_or(plane.normalize());
         Some(Triangle {
-            corners: [at(face[0])?, at(face[1])?, at(face[2])?],
+            corners: [a, b, c],
             normals: face.map(normal),
             plane,
-            body: 0,
+            body,
         })
     };
-    faces.iter().filter_map(|&face| triangle(face)).collect()
+    let faces = faces(camera.size, &corners, step);
+    faces.into_iter().filter_map(triangle).collect()
+}
+
+/// Square to the differences between the neighbours to both sides, or to the one there is.
+fn normal(corners: &Image<Option<Corner>>, pixel: UVec2, step: f64) -> Option<DVec3> {
+    let here = (*corners.get(pixel))?;
+    let [x, y] = pixel.as_i64vec2().to_array();
+    let along = |dx: i64, dy: i64| {
+        let [before, after] = [-1, 1].map(|side| {
+            let next = *corners.clamped(x + side * dx, y + side * dy);
+            next.filter(|next| (next.depth - here.depth).abs() <= step)
+                .map_or(here.at, |next| next.at)
+        });
+        after - before
+    };
+    along(0, 1).cross(along(1, 0)).try_normalize()
 }
 
 /// Triples of pixel numbers, clockwise on screen.

@@ -69,7 +69,7 @@ pub fn sphere(radius: f64) -> Scene {
     }
 }
 
-/// A pool of 2 × 0.5 × 2 m with two waves crossing, seen from above its rim.
+/// A pool of 2 × 0.5 × 2 m with two waves crossing, seen whole from above its rim.
 pub fn rippled_pool(radius: f64) -> Scene {
     let body = pool();
     Scene {
@@ -77,7 +77,7 @@ pub fn rippled_pool(radius: f64) -> Scene {
         particles: fill_pool(&body, radius, 1),
         surface: Box::new(body),
         radius,
-        eye: dvec3(0.2, 1.2, 2.4),
+        eye: dvec3(0.3, 1.8, 4.0),
         target: dvec3(0.0, -0.1, 0.0),
     }
 }

@@ -8,59 +8,21 @@ mod fresnel;
 mod object;
 mod path;
 mod render;
+mod world;
 
 use glam::DVec3;
 
-use crate::{Crossing, Ray, Surface};
+use crate::{Crossing, Ray};
 
 pub use fresnel::{Meeting, meet};
 pub use object::{Object, checker};
 pub use path::{End, Path, Vertex};
 pub use render::Picture;
+pub use world::{Optics, Sky, World};
 
 /// A ray does not meet again the surface that it starts on: crossings nearer than this (m) do
 /// not count.
 pub const SKIN: f64 = 1e-9;
-
-/// Branches with less of the pixel's light than this see the background instead of a surface.
-const FAINTEST: f64 = 1e-6;
-
-/// Radiance from far away, by unit direction in world space.
-pub type Sky = dyn Fn(DVec3) -> DVec3 + Send + Sync;
-
-/// What light meets.
-#[derive(Clone, Copy)]
-pub struct World<'a> {
-    /// The liquid.
-    pub surface: &'a dyn Surface,
-    /// Opaque things. Let the liquid reach a little into those that it touches, or there is air
-    /// between.
-    pub objects: &'a [Object],
-    /// What is around it all.
-    pub sky: &'a Sky,
-}
-
-/// What the liquid does to light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Optics {
-    /// Refractive index relative to the air around it.
-    pub refractive_index: f64,
-    /// Extinction per channel, 1/m: after d metres exp(−extinction · d) is left (Beer–Lambert).
-    pub extinction: DVec3,
-}
-
-impl Optics {
-    /// Water that absorbs nothing.
-    pub const WATER: Self = Self {
-        refractive_index: 1.333,
-        extinction: DVec3::ZERO,
-    };
-
-    /// The fraction left after a path (m) inside.
-    pub fn transmitted(&self, distance: f64) -> DVec3 {
-        (-self.extinction * distance).exp()
-    }
-}
 
 /// What becomes of the light that an interface reflects, unless it reflects all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,8 +45,11 @@ pub struct Tracer<'a> {
     /// What becomes of reflected light.
     pub reflections: Reflections,
     /// Whether a body that was left is not entered again, as with the renderer's layers, of
-    /// which each has one front.
+    /// which each has one front. Bodies are numbered below 64.
     pub each_body_once: bool,
+    /// Branches with less than this part of the pixel's light see the background instead of a
+    /// surface.
+    pub faintest: f64,
 }
 
 /// A ray on its way.
@@ -115,6 +80,7 @@ impl<'a> Tracer<'a> {
             interfaces: 16,
             reflections: Reflections::Traced,
             each_body_once: false,
+            faintest: 1e-5,
         }
     }
 
@@ -124,6 +90,7 @@ impl<'a> Tracer<'a> {
         Self {
             interfaces: 4,
             reflections: Reflections::Sky,
+            faintest: 0.0,
             ..Self::truth(world, optics)
         }
     }
@@ -143,7 +110,7 @@ impl<'a> Tracer<'a> {
     }
 
     fn light(&self, state: State, weight: f64) -> DVec3 {
-        if state.budget == 0 || weight < FAINTEST {
+        if state.budget == 0 || weight < self.faintest {
             return self.background(&state.ray);
         }
         let crossing = match self.next(&state) {

@@ -1,5 +1,7 @@
 //! Pictures, and how exact they are.
 
+use std::f64::consts::GOLDEN_RATIO;
+
 use glam::{DVec2, DVec3};
 
 use super::Tracer;
@@ -10,32 +12,34 @@ use crate::{Camera, Image};
 pub struct Picture {
     /// Linear radiance.
     pub image: Image<DVec3>,
-    /// Samples along each side of a pixel.
+    /// The root of the number of samples in each pixel.
     pub side: u32,
-    /// Root mean square of its difference, over all channels, from the picture of half as many
-    /// samples along each side: about the error of this one, or more.
+    /// Root mean square of its difference, over all channels, from the picture of half that
+    /// root: about the error of that one, and more than the error of this.
     pub error: f64,
 }
 
 impl Tracer<'_> {
-    /// Linear radiance, the mean of `side`² samples evenly spaced in each pixel.
+    /// Linear radiance, the mean of `side`² samples of each pixel on a lattice turned by the golden
+    /// ratio, in which no row or column holds two: edges of any slope converge alike.
     ///
     /// One sample is exact for the middle of each pixel: what to compare a renderer without
     /// antialiasing with.
     pub fn render(&self, camera: &Camera, side: u32) -> Image<DVec3> {
+        let count = f64::from(side * side);
         Image::from_fn(camera.size, |pixel| {
-            let place = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
-            let samples =
-                (0..side).flat_map(|y| (0..side).map(move |x| DVec2::new(place(x), place(y))));
-            let sum: DVec3 = samples
-                .map(|within| self.radiance(camera.ray(pixel.as_dvec2() + within)))
-                .sum();
-            sum / f64::from(side * side)
+            let sample = |i: u32| {
+                let i = f64::from(i);
+                let within =
+                    DVec2::new((i + 0.5) / count, (0.5 + i * (GOLDEN_RATIO - 1.0)).fract());
+                self.radiance(camera.ray(pixel.as_dvec2() + within))
+            };
+            (0..side * side).map(sample).sum::<DVec3>() / count
         })
     }
 
-    /// Doubles the samples along each side until the picture's error is a tenth of `judged`, the
-    /// error that it is to judge, or until there are `most` along each side.
+    /// Quadruples the samples until the picture's error is a tenth of `judged`, the error that it
+    /// is to judge, or until there are `most`² of them in each pixel.
     pub fn render_converged(&self, camera: &Camera, judged: f64, most: u32) -> Picture {
         let mut picture = Picture {
             image: self.render(camera, 1),

@@ -35,7 +35,7 @@ pub struct ImplicitSurface {
 
 impl ImplicitSurface {
     /// How far a kernel reaches, in its ellipsoid's semi-axes: in a body at rest, whose splats
-    /// have 1.24 r, 3.7 r or nearly two spacings. There φ is even to 1 %.
+    /// have 1.24 r, 3.7 r or nearly two spacings. There φ is 1 to about 1 %.
     pub const SUPPORT: f64 = 3.0;
 
     /// Value of the field at the surface.
