@@ -26,7 +26,7 @@ use super::{
     plan::{Plan, PlanInput, plan},
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
-    smooth::SmoothSteps,
+    smooth::{SmoothGroups, SmoothSteps},
     support::FluidSupport,
 };
 use crate::{
@@ -65,7 +65,7 @@ pub(crate) struct BodyFluid {
 pub(crate) struct BodyGroups {
     pub(crate) common: Option<BindGroup>,
     pub(crate) merge: Option<BindGroup>,
-    pub(crate) smooth: Vec<BindGroup>,
+    pub(crate) smooth: SmoothGroups,
     pub(crate) bulk_layers: Option<BindGroup>,
     pub(crate) splat_normals: Option<BindGroup>,
     pub(crate) spray_layers: Option<BindGroup>,

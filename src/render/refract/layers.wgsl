@@ -3,8 +3,8 @@
 
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{
-    DepthMap, decode_normal, depth_map, depth_slope, has_back, has_front, nearest_scene_depth, ndc_from_pixel,
-    pixel_from_ndc, view_depth,
+    DepthMap, decode_normal, depth_map, depth_slope, nearest_scene_depth, ndc_from_pixel,
+    view_depth,
 }
 #import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
 

@@ -80,6 +80,8 @@ impl SpecializedRenderPipeline for RefractPipeline {
             ("SCHLICK", key.schlick),
         ]);
         shader_defs.push(ShaderDefVal::UInt("INTERFACES".into(), key.interfaces));
+        let both = key.bulk && key.spray;
+        shader_defs.push(ShaderDefVal::Bool("BOTH_CLASSES".into(), both));
         RenderPipelineDescriptor {
             label: Some("fluid_refract_pipeline".into()),
             layout: vec![common_layout(), self.layout.clone()],

@@ -1,30 +1,23 @@
 // Traces each pixel's ray through up to four interfaces.
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
-    Ray, device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
+    device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
     nearest_scene_depth, ndc_from_pixel, view_from_device, view_ray,
 }
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
 #import bevy_fluid::render::refract::layers::{
     BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal, on_screen,
 }
-#import bevy_fluid::render::refract::search::{Found, Target, meets_scene, pixel_of, search}
+#import bevy_fluid::render::refract::search::{Target, meets_scene, pixel_of, search}
 #import bevy_fluid::render::types::{
     INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
 }
 
 const INTERFACES: u32 = #{INTERFACES}u;
-#ifdef BULK_LAYERS
-#ifdef SPRAY_LAYERS
-const HAS_BOTH: bool = true;
-#else
-const HAS_BOTH: bool = false;
-#endif
-#else
-const HAS_BOTH: bool = false;
-#endif
+// There is a second class to enter.
+const BOTH_CLASSES: bool = #{BOTH_CLASSES};
 
 struct Output {
     // What the liquid itself sends: reflections and highlights.
@@ -127,7 +120,7 @@ fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
 // Follows the path inside and outside until the budget is spent or nothing more is met.
 fn trace(path: ptr<function, Path>) {
     var both = false;
-    var may_enter = HAS_BOTH;
+    var may_enter = BOTH_CLASSES;
     for (var segment = 0u; segment < INTERFACES; segment += 1u) {
         if (*path).interfaces >= INTERFACES {
             return;

@@ -220,12 +220,9 @@ fn search_bracketed(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: 
 fn search_secant(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: Gap, guess: f32) -> Found {
     var t0 = 0.0;
     var g0 = start.value;
-    // Without a layer at the start there is no gap to draw a line through yet.
-    var has_first = start.known;
     var t1 = guess;
-    var g1 = start;
-    g1.known = false;
-    var has_second = false;
+    var side = start.side;
+    var met_layer = false;
     for (var i = 0; i < SECANT_EVALUATIONS; i += 1) {
         let gap = gap_at(to, origin + t1 * direction);
         if !gap.known {
@@ -235,57 +232,43 @@ fn search_secant(to: Target, origin: vec3<f32>, direction: vec3<f32>, start: Gap
         if abs(gap.value) <= tolerance(origin + t1 * direction) {
             return Found(STATUS_HIT, t1, gap.side);
         }
-        let slope = gap.value - g0;
-        let next = select(t1 - gap.value * (t1 - t0) / slope, 2.0 * t1, slope == 0.0 || !has_first);
+        // Without a layer at the start there is no gap to draw a first line from.
+        let has_line = (start.known || met_layer) && gap.value != g0;
+        let next = select(2.0 * t1, t1 - gap.value * (t1 - t0) / (gap.value - g0), has_line);
         // "Either" of the two is replaced: we replace the one that is farther off.
-        if abs(gap.value) <= abs(g0) || !has_second || !has_first {
+        if !met_layer || abs(gap.value) <= abs(g0) {
             t0 = t1;
             g0 = gap.value;
         }
-        has_first = true;
-        has_second = true;
+        met_layer = true;
         t1 = max(next, 0.0);
-        g1 = gap;
+        side = gap.side;
     }
-    let status = select(STATUS_INVALID, STATUS_BUDGET, g1.known);
-    return Found(select(status, STATUS_NO_BRACKET, !to.leaving), t1, g1.side);
+    let status = select(STATUS_INVALID, STATUS_BUDGET, met_layer);
+    return Found(select(status, STATUS_NO_BRACKET, !to.leaving), t1, side);
 }
 
 fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
-    let start = gap_at(to, origin);
-    let first_side = start.side;
+    var start = gap_at(to, origin);
     var guess = 4.0 * body.radius;
     // The depth to go, were the target square to the view; never along it.
     let forward = max(abs(direction.z), 0.2);
-    if to.leaving {
-        if !start.known {
-            return Found(STATUS_INVALID, 0.0, first_side);
-        }
-        var inside = start;
-        if to.both {
-            // On a surface by construction: take the first step on trust.
-            inside.value = min(inside.value, -0.01 * body.radius);
-            let back = layer_depth(to.kind, BACK, clamp_to_view(pixel_of(origin)));
-            let front = layer_depth(to.kind, FRONT, clamp_to_view(pixel_of(origin)));
-            guess = max(guess, select(0.0, back.z - front.z, front.there));
-        } else {
-            if start.value >= -tolerance(origin) {
-                // Thinner than can be told.
-                return Found(STATUS_HIT, 0.0, first_side);
-            }
-            guess = -start.value / forward;
-        }
-#ifdef SECANT
-        return search_secant(to, origin, direction, inside, guess);
-#else
-        return search_bracketed(to, origin, direction, inside, guess);
-#endif
+    if to.leaving && !start.known {
+        return Found(STATUS_INVALID, 0.0, start.side);
     }
-    if start.known && start.value >= 0.0 {
-        // Behind it already.
-        return Found(STATUS_NO_BRACKET, 0.0, first_side);
-    }
-    if start.known {
+    if to.both {
+        // On a surface by construction: take the first step on trust.
+        start.value = min(start.value, -0.01 * body.radius);
+        let back = layer_depth(to.kind, BACK, clamp_to_view(pixel_of(origin)));
+        let front = layer_depth(to.kind, FRONT, clamp_to_view(pixel_of(origin)));
+        guess = max(guess, select(0.0, back.z - front.z, front.there));
+    } else if to.leaving && start.value >= -tolerance(origin) {
+        // Thinner than can be told.
+        return Found(STATUS_HIT, 0.0, start.side);
+    } else if start.known && start.value >= 0.0 {
+        // Entering, and behind it already.
+        return Found(STATUS_NO_BRACKET, 0.0, start.side);
+    } else if start.known {
         guess = -start.value / forward;
     }
 #ifdef SECANT

@@ -252,22 +252,47 @@ impl SmoothSteps {
             .collect()
     }
 
-    /// A bind group for each texture that is read.
+    /// A bind group for each texture that is read; none without steps.
     pub(crate) fn bind_groups(
         &self,
         device: &RenderDevice,
         cache: &PipelineCache,
         pipeline: &SmoothPipeline,
         layers: &Layers,
-    ) -> Vec<BindGroup> {
+    ) -> SmoothGroups {
+        if self.is_empty() {
+            return SmoothGroups::default();
+        }
         let layout = cache.get_bind_group_layout(&pipeline.layout);
-        self.steps
-            .iter()
-            .map(|step| {
-                let view = texture(layers, step.from);
-                device.create_bind_group("fluid_smooth", &layout, &BindGroupEntries::single(view))
-            })
-            .collect()
+        let group = |view: &TextureView| {
+            device.create_bind_group("fluid_smooth", &layout, &BindGroupEntries::single(view))
+        };
+        SmoothGroups {
+            bulk: layers
+                .bulk
+                .each_ref()
+                .map(|bulk| Some(group(&bulk.default_view))),
+            slopes: layers
+                .slopes
+                .as_ref()
+                .map(|slopes| group(&slopes.default_view)),
+        }
+    }
+}
+
+/// What the passes read, by texture: many passes read the same.
+#[derive(Default)]
+pub(crate) struct SmoothGroups {
+    bulk: [Option<BindGroup>; 2],
+    slopes: Option<BindGroup>,
+}
+
+impl SmoothGroups {
+    fn get(&self, from: Buffer) -> Option<&BindGroup> {
+        match from {
+            Buffer::Bulk(i) => self.bulk[i].as_ref(),
+            Buffer::Slopes => self.slopes.as_ref(),
+        }
     }
 }
 
@@ -298,9 +323,11 @@ pub(crate) fn smooth(
     let recorder = recorder.as_deref();
     let span = recorder.time_span(ctx.command_encoder(), "fluid_smooth");
     for body in bodies.ready() {
-        let passes = body.pipelines.smooth.iter().zip(&body.groups.smooth);
-        for (step, (&pipeline, group)) in body.steps.steps.iter().zip(passes) {
-            let Some(pipeline) = cache.get_render_pipeline(pipeline) else {
+        for (step, &pipeline) in body.steps.steps.iter().zip(&body.pipelines.smooth) {
+            let (Some(pipeline), Some(group)) = (
+                cache.get_render_pipeline(pipeline),
+                body.groups.smooth.get(step.from),
+            ) else {
                 continue;
             };
             let target = cleared(texture(&body.layers, step.to), NO_LAYERS);
