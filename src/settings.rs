@@ -34,6 +34,12 @@ impl ScreenSpaceFluid {
         ..Self::DEFAULT
     };
 
+    /// As near to the truth as the method gets.
+    pub const ACCURATE: Self = Self {
+        search: Search::Bracketed { coarse_samples: 8 },
+        ..Self::DEFAULT
+    };
+
     /// The default.
     pub const DEFAULT: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),

@@ -5,6 +5,7 @@ mod bindings;
 mod bodies;
 mod bounds;
 mod composite;
+mod exit;
 mod extract;
 mod gpu_types;
 mod layers;
@@ -38,6 +39,7 @@ use bevy::{
 
 pub use self::{
     bodies::{Body, ViewBodies},
+    exit::{ExitRay, decode_normal, encode_normal},
     extract::{ExtractedFluid, GpuSplats, ViewSurroundings},
     gpu_types::SearchStatus,
     layers::Layers,
@@ -48,6 +50,23 @@ use crate::{
     particles::FluidParticles,
     settings::{FluidDebugView, ScreenSpaceFluid},
 };
+
+/// The passes of a view, in [`Core3d`], to order passes of one's own against.
+#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
+pub enum FluidPasses {
+    /// The opaque scene's nearest and farthest depths, over the samples of each pixel.
+    SceneDepth,
+    /// Splats to layers.
+    Splat,
+    /// The bulk's layers are smoothed.
+    Smooth,
+    /// Normals that smoothing has not written.
+    Normals,
+    /// Rays are traced through the layers.
+    Refract,
+    /// The liquid is put over the opaque scene.
+    Composite,
+}
 
 /// Draws fluids. Added by [`FluidPlugin`](crate::FluidPlugin).
 pub(crate) struct FluidRenderPlugin {
@@ -136,16 +155,17 @@ impl Plugin for FluidRenderPlugin {
                 Core3d,
                 (
                     (
-                        scene_depth::scene_depth,
-                        splat::splat,
-                        smooth::smooth,
-                        normals::normals,
-                        refract::refract,
+                        scene_depth::scene_depth.in_set(FluidPasses::SceneDepth),
+                        splat::splat.in_set(FluidPasses::Splat),
+                        smooth::smooth.in_set(FluidPasses::Smooth),
+                        normals::normals.in_set(FluidPasses::Normals),
+                        refract::refract.in_set(FluidPasses::Refract),
                     )
                         .chain()
                         .after(Core3dSystems::Prepass)
                         .before(Core3dSystems::MainPass),
                     composite::composite
+                        .in_set(FluidPasses::Composite)
                         .in_set(Core3dSystems::MainPass)
                         .after(main_opaque_pass_3d)
                         .after(main_transmissive_pass_3d)

@@ -149,12 +149,8 @@ impl Ellipsoid {
 }
 
 /// The unit vector of an octahedral code.
-pub(crate) fn decode_normal([x, y]: [f32; 2]) -> DVec3 {
-    let (x, y) = (f64::from(x), f64::from(y));
-    let z = 1.0 - x.abs() - y.abs();
-    let fold = (-z).max(0.0);
-    let unfold = |v: f64| if v >= 0.0 { v - fold } else { v + fold };
-    DVec3::new(unfold(x), unfold(y), z).normalize()
+pub(crate) fn decode_normal(code: [f32; 2]) -> DVec3 {
+    bevy_fluid::render::decode_normal(code).as_dvec3()
 }
 
 /// Degrees between two vectors, exact for small angles too.

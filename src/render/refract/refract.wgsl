@@ -9,7 +9,7 @@
 #import bevy_fluid::render::refract::layers::{
     BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal, on_screen,
 }
-#import bevy_fluid::render::refract::search::{Target, meets_scene, pixel_of, search}
+#import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, pixel_of, search}
 #import bevy_fluid::render::types::{
     INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
@@ -172,12 +172,12 @@ fn trace(path: ptr<function, Path>) {
 
 // (screen position, device depth, direction, flags): position as two 16-bit fractions of the
 // viewport, direction octahedral in view space. Flags: bits 0–15 search statuses, 16–18
-// interfaces met, 19 direct, 20 first kind, 31 there is liquid.
+// interfaces met, 19 direct, 20 first kind, 21–28 evaluations, 31 there is liquid.
 fn pack_exit(path: Path) -> vec4<u32> {
     let device = device_from_view(path.position);
     let uv = clamp(device.xy * vec2(0.5, -0.5) + 0.5, vec2(0.0), vec2(1.0));
     let flags = path.status | (path.interfaces << 16u) | (select(0u, 1u, path.direct) << 19u)
-        | (path.first_kind << 20u) | (1u << 31u);
+        | (path.first_kind << 20u) | (min(evaluations, 255u) << 21u) | (1u << 31u);
     return vec4(
         pack2x16unorm(uv),
         bitcast<u32>(device.z),

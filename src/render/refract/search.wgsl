@@ -48,7 +48,11 @@ fn pixel_of(position: vec3<f32>) -> vec2<f32> {
 
 const NOWHERE: f32 = -1e9;
 
+// How often this pixel has asked a layer: what a search costs.
+var<private> evaluations: u32;
+
 fn gap_at(to: Target, position: vec3<f32>) -> Gap {
+    evaluations += select(1u, 0u, to.scene);
     let pixel = pixel_of(position);
     let z = -position.z;
     var out = Gap(false, select(-1.0, 1.0, to.leaving), select(FRONT, BACK, to.leaving), on_screen(pixel));

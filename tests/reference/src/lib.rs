@@ -48,4 +48,4 @@ pub use camera::{Camera, Lens};
 pub use image::Image;
 pub use layers::{Hit, Span, layers};
 pub use ray::{Ray, angle};
-pub use surface::{Crossing, Surface};
+pub use surface::{Crossing, Nearest, Surface};

@@ -110,6 +110,12 @@ fn direction(side: usize, texel: usize) -> Vec3 {
     on_cube(side, texel).normalize()
 }
 
+/// A sky of radiances by unit direction in world space, as Bevy's skyboxes and environment maps
+/// take it: an `Rgba16Float` cube of `side` texels along a face, without mip levels.
+pub fn sky_cubemap(side: usize, radiance: impl Fn(Vec3) -> Vec3) -> Image {
+    cube_image(&[Cubemap::from_fn(side, radiance)], "sky")
+}
+
 /// An `Rgba16Float` cube with these mip levels, the largest first.
 pub(crate) fn cube_image(levels: &[Cubemap], label: &'static str) -> Image {
     let side = levels[0].side as u32;

@@ -26,6 +26,7 @@ mod sun;
 mod tank;
 
 pub use camera::{frame_camera, orbit_camera};
+pub use cubemap::sky_cubemap;
 pub use sky::Sky;
 
 use bevy::{ecs::system::SystemParam, prelude::*};

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::{Crossing, Surface};
+use super::{Crossing, Nearest, Surface};
 use crate::Ray;
 
 /// A box.
@@ -71,5 +71,17 @@ impl Surface for Cuboid {
     fn inside(&self, point: DVec3) -> Option<usize> {
         let local = self.turn.inverse() * (point - self.center);
         local.abs().cmplt(self.half).all().then_some(0)
+    }
+
+    /// Beyond an edge or a corner the normal is that of the face that is farthest off.
+    fn nearest(&self, point: DVec3) -> Option<Nearest> {
+        let local = self.turn.inverse() * (point - self.center);
+        let beyond = local.abs() - self.half;
+        let axis = beyond.max_position();
+        let outside = beyond.max(DVec3::ZERO).length();
+        Some(Nearest {
+            distance: outside + beyond.max_element().min(0.0),
+            normal: self.turn * (DVec3::AXES[axis] * local[axis].signum()),
+        })
     }
 }

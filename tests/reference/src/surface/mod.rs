@@ -39,6 +39,23 @@ pub trait Surface: Send + Sync {
 
     /// The body that a point is in.
     fn inside(&self, point: DVec3) -> Option<usize>;
+
+    /// How far a point is from the surface and which way is out, where that is known.
+    ///
+    /// A surface that lies a little too deep everywhere still has the right normals in this sense,
+    /// so that offset and roughness can be told apart.
+    fn nearest(&self, _point: DVec3) -> Option<Nearest> {
+        None
+    }
+}
+
+/// What a point is to the part of a surface that is nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Distance, m; negative inside.
+    pub distance: f64,
+    /// Outward unit normal.
+    pub normal: DVec3,
 }
 
 /// A crossing of body 0 whose direction follows from the normal.

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Crossing, Cuboid, Surface, crossing};
+use super::{Crossing, Cuboid, Nearest, Surface, crossing};
 use crate::Ray;
 
 /// A standing sine wave.
@@ -116,6 +116,23 @@ impl RippledPool {
         t
     }
 
+    /// The point of the waves nearest to another: there the normal leads to it.
+    fn nearest_on_top(&self, point: DVec3) -> Nearest {
+        let mut foot = across(point);
+        let mut nearest = Nearest {
+            distance: 0.0,
+            normal: DVec3::Y,
+        };
+        for _ in 0..50 {
+            let normal = self.normal(foot);
+            let from_foot = point - DVec3::new(foot.x, self.height(foot), foot.y);
+            let distance = from_foot.dot(normal);
+            nearest = Nearest { distance, normal };
+            foot = across(point - distance * normal);
+        }
+        nearest
+    }
+
     /// The box up to above the crests.
     fn hull(&self) -> Cuboid {
         let crest: f64 = self.waves.iter().map(|w| w.amplitude.abs()).sum();
@@ -149,6 +166,16 @@ impl Surface for RippledPool {
         self.hull()
             .inside(point)
             .filter(|_| point.y < self.height(across(point)))
+    }
+
+    fn nearest(&self, point: DVec3) -> Option<Nearest> {
+        let top = self.nearest_on_top(point);
+        let walls = self.hull().nearest(point)?;
+        Some(if top.distance > walls.distance {
+            top
+        } else {
+            walls
+        })
     }
 }
 

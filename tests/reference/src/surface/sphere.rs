@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Crossing, Surface};
+use super::{Crossing, Nearest, Surface};
 use crate::Ray;
 
 /// A ball.
@@ -35,5 +35,13 @@ impl Surface for Sphere {
 
     fn inside(&self, point: DVec3) -> Option<usize> {
         (point.distance(self.center) < self.radius).then_some(0)
+    }
+
+    fn nearest(&self, point: DVec3) -> Option<Nearest> {
+        let out = point - self.center;
+        Some(Nearest {
+            distance: out.length() - self.radius,
+            normal: out.normalize_or(DVec3::Y),
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Crossing, Surface};
+use super::{Crossing, Nearest, Surface};
 use crate::Ray;
 
 /// Bodies that merge where they overlap: only the outermost surface is left.
@@ -23,6 +23,12 @@ impl Surface for Union {
 
     fn inside(&self, point: DVec3) -> Option<usize> {
         self.0.iter().find_map(|body| body.inside(point)).map(|_| 0)
+    }
+
+    /// Of the body that is nearest; where bodies overlap, of the one that the point is deepest in.
+    fn nearest(&self, point: DVec3) -> Option<Nearest> {
+        let known = self.0.iter().filter_map(|body| body.nearest(point));
+        known.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 }
 

@@ -1,0 +1,129 @@
+//! Speed against error of `bevy_fluid`, measured in one run: the program behind
+//! `cargo bench --bench speed_error`.
+//!
+//! Every scene is drawn headless with every method. Errors are those of what the GPU holds
+//! against `fluid_reference`; times are GPU timestamps, the methods taking turns. [`run`] writes a
+//! table, plots and a summary.
+
+mod error;
+mod front;
+mod methods;
+mod options;
+mod pictures;
+mod plots;
+mod rig;
+mod scenes;
+mod searches;
+mod summary;
+mod surfaces;
+mod surroundings;
+mod table;
+mod thesis;
+mod times;
+mod truth;
+
+use fluid_stage::adapter_name;
+use indicatif::{ProgressBar, ProgressStyle};
+
+pub use error::ReportError;
+pub use options::Options;
+pub use table::{Row, Table};
+
+use methods::Method;
+use pictures::TruePicture;
+use rig::Rig;
+use scenes::{Measures, Scene};
+use table::Subject;
+use truth::{Splats, Truth};
+
+/// Measures what is asked for and writes the report.
+///
+/// # Errors
+/// No adapter, a picture that cannot be drawn, a value that is not a number, a file that cannot be
+/// written.
+pub fn run(options: &Options) -> Result<(), ReportError> {
+    let mut table = Table::default();
+    let mut adapter = String::new();
+    for make in scenes::asked(options) {
+        let scene = make()?;
+        adapter = measure(&mut table, &scene, options)?;
+        // What is there so far, should a later scene fail.
+        table.write(&options.out)?;
+    }
+    plots::draw(&table, &options.out)?;
+    summary::write(&table, &adapter, &options.out)
+}
+
+/// Measures a scene and tells which adapter did it.
+fn measure(
+    table: &mut Table,
+    scene: &Scene,
+    options: &Options,
+) -> Result<String, ReportError> {
+    let progress = ProgressBar::new(0).with_style(
+        ProgressStyle::with_template("{prefix:20} {wide_bar} {pos}/{len} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    progress.set_prefix(scene.name);
+    let wanted = |methods: Vec<Method>| -> Vec<Method> {
+        let named = |method: &Method| options.wants_method(method.name);
+        methods.into_iter().filter(named).collect()
+    };
+    let smoothings = wanted(methods::smoothings(options.quick));
+    let frames = match scene.measures {
+        Measures::Surface => Vec::new(),
+        Measures::All => wanted(methods::frames(options.quick)),
+    };
+
+    progress.set_message("truth");
+    let mut rig = Rig::new(scene)?;
+    let splats = Splats::of(scene)?;
+    let truth = Truth::of(scene, &splats);
+    rig.show(&methods::smoothings(true)[0])?;
+    surfaces::measure_layers(table, scene, &splats, &rig)?;
+    let regions = surfaces::regions(scene, &truth, &rig.seen()?.bulk);
+
+    progress.set_length((smoothings.len() + frames.len()) as u64);
+    progress.set_message("errors");
+    for method in &smoothings {
+        rig.show(method)?;
+        surfaces::measure(table, scene, &truth, &regions, method, &rig)?;
+        progress.inc(1);
+    }
+    if !frames.is_empty() {
+        let picture = TruePicture::of(scene, &truth, &regions);
+        for method in &frames {
+            rig.show(method)?;
+            let got = rig.picture()?;
+            let subject = Subject {
+                scene,
+                method: method.name,
+                parameters: &method.parameters,
+            };
+            pictures::measure(table, subject, &picture, &regions, &got)?;
+            surfaces::measure(table, scene, &truth, &regions, method, &rig)?;
+            progress.inc(1);
+        }
+        pictures::ablate(table, scene, &picture, &regions, &mut rig)?;
+        pictures::measure_furnace(table, scene, &mut rig)?;
+        searches::measure(table, scene, &mut rig, options.quick)?;
+    }
+
+    // Of close-ups one size says enough of speed.
+    if scene.measures == Measures::Surface && !scene.name.ends_with("-6px") {
+        progress.finish_with_message("done");
+        return Ok(adapter_name(&rig.app));
+    }
+    progress.set_message("times");
+    let turns = times::turns(&adapter_name(&rig.app), options.quick);
+    let mut timed: Vec<Method> = smoothings.into_iter().chain(frames).collect();
+    if scene.name == "wave" && !options.quick && options.method.is_empty() {
+        timed.extend([false, true].into_iter().flat_map(methods::table));
+        timed.dedup_by_key(|method| method.label());
+    }
+    progress.set_position(0);
+    progress.set_length(timed.len() as u64 * u64::from(turns + 1));
+    times::measure(table, scene, &timed, &mut rig, turns, &progress)?;
+    progress.finish_with_message("done");
+    Ok(adapter_name(&rig.app))
+}

@@ -1,0 +1,183 @@
+//! How far pictures are from the tracer's.
+
+use bevy::math::DVec3;
+use bevy_fluid::{Fresnel, Refractions, ScreenSpaceFluid};
+use fluid_reference::{
+    Image, Surface,
+    mesh::LayerMeshes,
+    metrics::{PIXELS_PER_DEGREE, Regions, encode_srgb, flip, furnace_error, mean, psnr, ssim},
+    tracer::{Object, Tracer, World},
+};
+
+use crate::{
+    ReportError,
+    methods::{self, Method},
+    rig::{Rig, Seen},
+    scenes::Scene,
+    surfaces::{metric, named},
+    surroundings::sky,
+    table::{Subject, Table},
+    truth::{Truth, water},
+};
+
+/// What the true picture is of a scene, sRGB-encoded; black where no pixel is judged.
+pub(crate) struct TruePicture {
+    image: Image<DVec3>,
+    /// Whether all of it is there, so that perceptual metrics mean something.
+    whole: bool,
+}
+
+impl TruePicture {
+    /// Every reflection and refraction at the true surface, exact for the middle of each pixel, as
+    /// the renderer has no antialiasing of its own.
+    pub(crate) fn of(scene: &Scene, truth: &Truth, regions: &Regions) -> Self {
+        let objects = scene.around.objects();
+        let tracer = Tracer::truth(world(truth.surface(), &objects), water());
+        let whole = matches!(truth, Truth::Exact(_));
+        let [(_, all), ..] = named(regions);
+        let image = Image::from_fn(scene.camera.size, |pixel| {
+            if whole || *all.get(pixel) {
+                encode_srgb(tracer.radiance(scene.camera.pixel_ray(pixel)))
+            } else {
+                DVec3::ZERO
+            }
+        });
+        Self { image, whole }
+    }
+}
+
+fn world<'a>(surface: &'a dyn Surface, objects: &'a [Object]) -> World<'a> {
+    World {
+        surface,
+        objects,
+        sky: &sky,
+    }
+}
+
+/// The picture as it is drawn against a true one.
+pub(crate) fn measure(
+    table: &mut Table,
+    subject: Subject,
+    truth: &TruePicture,
+    regions: &Regions,
+    got: &Image<DVec3>,
+) -> Result<(), ReportError> {
+    let wrong = |source| metric(subject, source);
+    let maps = if truth.whole {
+        Some((
+            flip(&truth.image, got, PIXELS_PER_DEGREE).map_err(wrong)?,
+            ssim(&truth.image, got).map_err(wrong)?,
+        ))
+    } else {
+        None
+    };
+    for (region, mask) in named(regions) {
+        if !mask.pixels().contains(&true) {
+            continue;
+        }
+        // Of pictures that do not differ at all it is infinite.
+        let peak = psnr(&truth.image, got, Some(&mask)).map_err(wrong)?.min(99.0);
+        table.add(subject, "psnr", region, peak, "dB");
+        let rmse = 10_f64.powf(-peak / 20.0);
+        table.add(subject, "picture_rmse", region, rmse, "1");
+        if let Some((flip, ssim)) = &maps {
+            let flip = mean("FLIP", flip, Some(&mask)).map_err(wrong)?;
+            table.add(subject, "flip", region, flip, "1");
+            let ssim = mean("SSIM", ssim, Some(&mask)).map_err(wrong)?;
+            table.add(subject, "ssim", region, ssim, "1");
+        }
+    }
+    Ok(())
+}
+
+/// A picture of exact rays through the renderer's own layers: the thesis's reference. What the
+/// renderer is off from it, its search and its order of interfaces are to blame for.
+pub(crate) fn through_layers(scene: &Scene, seen: &Seen, method: &Method) -> Image<DVec3> {
+    let layers = [&seen.bulk, &seen.spray].map(Clone::clone);
+    let meshes = LayerMeshes::new(&scene.camera, &layers, 2.0 * scene.radius);
+    let objects = scene.around.objects();
+    let tracer = Tracer {
+        interfaces: method.settings.refractions.count(),
+        each_body_once: true,
+        ..Tracer::renderer(world(&meshes, &objects), water())
+    };
+    tracer.render(&scene.camera, 1).map(|c| encode_srgb(*c))
+}
+
+/// Which part of the picture's error comes from the layers and which from the search.
+pub(crate) fn ablate(
+    table: &mut Table,
+    scene: &Scene,
+    truth: &TruePicture,
+    regions: &Regions,
+    rig: &mut Rig,
+) -> Result<(), ReportError> {
+    let method = default();
+    rig.show(&method)?;
+    let subject = |parameters| Subject {
+        scene,
+        method: "ablation",
+        parameters,
+    };
+    let seen = rig.seen()?;
+    let drawn = rig.picture()?;
+    let exact_search = through_layers(scene, &seen, &method);
+    let of = subject("our layers, exact search");
+    measure(table, of, truth, regions, &exact_search)?;
+    measure(table, subject("our layers, our search"), truth, regions, &drawn)?;
+    // Against each other: what the search alone is off by.
+    let alone = TruePicture {
+        image: exact_search,
+        whole: true,
+    };
+    measure(table, subject("our search against exact search"), &alone, regions, &drawn)?;
+    let bulk = scene.exact_bulk.as_deref().or(scene.exact.as_deref());
+    if let Some(bulk) = bulk {
+        let spans = fluid_reference::layers(&scene.camera, bulk);
+        rig.put_exact_layers(Some(&spans));
+        rig.frame();
+        let drawn = rig.picture()?;
+        rig.put_exact_layers(None);
+        measure(table, subject("exact layers, our search"), truth, regions, &drawn)?;
+    }
+    Ok(())
+}
+
+/// Light made or lost in a white furnace.
+pub(crate) fn measure_furnace(
+    table: &mut Table,
+    scene: &Scene,
+    rig: &mut Rig,
+) -> Result<(), ReportError> {
+    rig.heat(true);
+    for (name, fresnel) in [("exact", Fresnel::Exact), ("schlick", Fresnel::Schlick)] {
+        let settings = ScreenSpaceFluid {
+            fresnel,
+            refractions: Refractions::Four,
+            ..ScreenSpaceFluid::DEFAULT
+        };
+        rig.show(&Method {
+            settings,
+            ..default()
+        })?;
+        let [radiance, transmission] = rig.light()?;
+        let there = radiance.map(Option::is_some);
+        let [radiance, transmission] =
+            [radiance, transmission].map(|light| light.map(|light| light.unwrap_or(DVec3::ZERO)));
+        let subject = Subject {
+            scene,
+            method: "furnace",
+            parameters: name,
+        };
+        let error = furnace_error(&radiance, &transmission, Some(&there))
+            .map_err(|source| metric(subject, source))?;
+        table.add(subject, "furnace_p50", "all", error.p50, "1");
+        table.add(subject, "furnace_max", "all", error.max, "1");
+    }
+    rig.heat(false);
+    Ok(())
+}
+
+fn default() -> Method {
+    methods::frames(true).swap_remove(0)
+}

@@ -1,0 +1,137 @@
+//! The fronts as pictures: one for each scene and error, methods as series.
+
+use std::path::Path;
+
+use image::{ImageBuffer, Rgb};
+use plotters::{
+    coord::Shift,
+    prelude::*,
+    style::{FontStyle, register_font, text_anchor::{HPos, Pos, VPos}},
+};
+
+use crate::{
+    ReportError, Table,
+    front::{Point, TRADES, Trade, points},
+};
+
+const SIZE: (u32, u32) = (960, 640);
+/// Colours that also differ in lightness, for print and for those who see few colours.
+const COLORS: [RGBColor; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(90, 90, 90),
+    RGBColor(0, 0, 0),
+];
+
+/// Draws every front that the table has, as SVG and PNG.
+pub(crate) fn draw(table: &Table, folder: &Path) -> Result<(), ReportError> {
+    // Fails only where the font is none.
+    let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    for scene in table.scenes() {
+        for trade in &TRADES {
+            let points = points(table, scene, trade);
+            if points.len() < 2 {
+                continue;
+            }
+            let stem = folder.join(format!("{scene}_{}", trade.error));
+            let failed = |reason: String| ReportError::Plot {
+                path: stem.clone(),
+                reason,
+            };
+            let svg = stem.with_extension("svg");
+            let area = SVGBackend::new(&svg, SIZE).into_drawing_area();
+            draw_front(&area, scene, trade, &points).map_err(failed)?;
+            drop(area);
+            let mut pixels = vec![0; (SIZE.0 * SIZE.1 * 3) as usize];
+            let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
+            draw_front(&area, scene, trade, &points).map_err(failed)?;
+            drop(area);
+            let png = stem.with_extension("png");
+            ImageBuffer::<Rgb<u8>, _>::from_raw(SIZE.0, SIZE.1, pixels)
+                .ok_or_else(|| failed("too few pixels".into()))?
+                .save(&png)
+                .map_err(|error| failed(error.to_string()))?;
+        }
+    }
+    Ok(())
+}
+
+/// From a little below the least to a little above the greatest.
+fn range(values: impl Iterator<Item = f64> + Clone) -> std::ops::Range<f64> {
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(0.0, f64::max);
+    low / 1.3..high * 1.5
+}
+
+fn draw_front<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    scene: &str,
+    trade: &Trade,
+    points: &[Point],
+) -> Result<(), String> {
+    let text = |error: DrawingAreaErrorKind<DB::ErrorType>| error.to_string();
+    area.fill(&WHITE).map_err(text)?;
+    let caption = format!("{scene}: {} against time", trade.title);
+    let mut chart = ChartBuilder::on(area)
+        .caption(caption, ("sans-serif", 24))
+        .margin(16)
+        .x_label_area_size(46)
+        .y_label_area_size(70)
+        .build_cartesian_2d(
+            range(points.iter().map(|p| p.time)).log_scale(),
+            range(points.iter().map(|p| p.error)).log_scale(),
+        )
+        .map_err(text)?;
+    chart
+        .configure_mesh()
+        .x_desc(format!("GPU ms a frame ({})", trade.time))
+        .y_desc(trade.unit)
+        .light_line_style(RGBColor(240, 240, 240))
+        .label_style(("sans-serif", 15))
+        .axis_desc_style(("sans-serif", 17))
+        .draw()
+        .map_err(text)?;
+    let front = points.iter().filter(|p| p.on_front);
+    chart
+        .draw_series(LineSeries::new(
+            front.clone().map(|p| (p.time, p.error)),
+            RGBColor(170, 170, 170).stroke_width(2),
+        ))
+        .map_err(text)?;
+    let mut methods: Vec<&str> = points.iter().map(|p| p.method.as_str()).collect();
+    methods.sort_unstable();
+    methods.dedup();
+    for (method, &color) in methods.iter().zip(COLORS.iter().cycle()) {
+        let own = points.iter().filter(|p| p.method == *method);
+        chart
+            .draw_series(own.map(|p| Circle::new((p.time, p.error), 5, color.filled())))
+            .map_err(text)?
+            .label(*method)
+            .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+    }
+    let anchor = Pos::new(HPos::Left, VPos::Bottom);
+    let style = TextStyle::from(("sans-serif", 13).into_font()).pos(anchor);
+    chart
+        .draw_series(front.map(|p| {
+            let label = if p.parameters.is_empty() {
+                p.method.clone()
+            } else {
+                p.parameters.clone()
+            };
+            EmptyElement::at((p.time, p.error)) + Text::new(label, (7, -5), style.clone())
+        }))
+        .map_err(text)?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 15))
+        .draw()
+        .map_err(text)?;
+    area.present().map_err(text)
+}

@@ -1,0 +1,196 @@
+//! What is measured on: bodies whose surface is known, and the two scenes of the thesis.
+
+use std::{fs, path::PathBuf};
+
+use bevy::math::{DVec3, UVec2, Vec3, dvec3, uvec2};
+use fluid_reference::{Camera, Lens, Surface, scene};
+
+use crate::{Options, ReportError, surroundings::Surroundings};
+
+/// A scene, ready to be drawn and to be judged.
+pub(crate) struct Scene {
+    pub(crate) name: &'static str,
+    pub(crate) positions: Vec<Vec3>,
+    /// Particle radius, m.
+    pub(crate) radius: f64,
+    pub(crate) camera: Camera,
+    pub(crate) around: Surroundings,
+    /// The exact surface of all of it; `None` where only particles are known.
+    pub(crate) exact: Option<Box<dyn Surface>>,
+    /// The exact surface of the bulk alone, where droplets are another body.
+    pub(crate) exact_bulk: Option<Box<dyn Surface>>,
+    pub(crate) measures: Measures,
+}
+
+/// What a scene is good for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Measures {
+    /// The surface alone.
+    Surface,
+    /// All.
+    All,
+}
+
+/// A scene by name, not yet made.
+struct Entry {
+    name: &'static str,
+    quick: bool,
+    make: fn(&Options, &'static str) -> Result<Scene, ReportError>,
+}
+
+const fn entry(
+    name: &'static str,
+    quick: bool,
+    make: fn(&Options, &'static str) -> Result<Scene, ReportError>,
+) -> Entry {
+    Entry { name, quick, make }
+}
+
+/// Particle radius of bodies that fill the picture, m.
+const RADIUS: f64 = 0.025;
+
+const ENTRIES: [Entry; 27] = [
+    entry("slab", false, |o, n| Ok(body(o, n, scene::slab(RADIUS, 30.0)))),
+    entry("tilted-plane", false, |o, n| Ok(body(o, n, scene::tilted_plane(RADIUS, 60.0)))),
+    entry("sphere", true, |o, n| Ok(body(o, n, scene::sphere(RADIUS)))),
+    entry("rippled-pool", false, |o, n| Ok(body(o, n, scene::rippled_pool(RADIUS)))),
+    entry("half-filled-box", false, |o, n| Ok(body(o, n, scene::half_filled_box(RADIUS)))),
+    entry("two-spheres", false, |o, n| Ok(body(o, n, scene::two_spheres(RADIUS)))),
+    entry("pool-and-droplets", true, |o, n| Ok(body(o, n, scene::pool_and_droplets(RADIUS)))),
+    entry("thin-sheet", false, |o, n| Ok(body(o, n, scene::thin_sheet(RADIUS)))),
+    entry("depth-step", true, |o, n| Ok(body(o, n, scene::depth_step(RADIUS)))),
+    entry("plane-0-at-3px", false, |o, n| Ok(plane(o, n, 0.0, 3.0))),
+    entry("plane-0-at-6px", true, |o, n| Ok(plane(o, n, 0.0, 6.0))),
+    entry("plane-0-at-12px", false, |o, n| Ok(plane(o, n, 0.0, 12.0))),
+    entry("plane-0-at-30px", false, |o, n| Ok(plane(o, n, 0.0, 30.0))),
+    entry("plane-60-at-3px", false, |o, n| Ok(plane(o, n, 60.0, 3.0))),
+    entry("plane-60-at-6px", false, |o, n| Ok(plane(o, n, 60.0, 6.0))),
+    entry("plane-60-at-12px", false, |o, n| Ok(plane(o, n, 60.0, 12.0))),
+    entry("plane-60-at-30px", false, |o, n| Ok(plane(o, n, 60.0, 30.0))),
+    entry("plane-80-at-3px", false, |o, n| Ok(plane(o, n, 80.0, 3.0))),
+    entry("plane-80-at-6px", true, |o, n| Ok(plane(o, n, 80.0, 6.0))),
+    entry("plane-80-at-12px", false, |o, n| Ok(plane(o, n, 80.0, 12.0))),
+    entry("plane-80-at-30px", false, |o, n| Ok(plane(o, n, 80.0, 30.0))),
+    entry("sphere-at-3px", false, |o, n| Ok(ball(o, n, 3.0))),
+    entry("sphere-at-6px", true, |o, n| Ok(ball(o, n, 6.0))),
+    entry("sphere-at-12px", false, |o, n| Ok(ball(o, n, 12.0))),
+    entry("sphere-at-30px", false, |o, n| Ok(ball(o, n, 30.0))),
+    entry("wave", false, |o, n| simulated(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))),
+    entry("step", false, |o, n| simulated(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))),
+];
+
+/// What scenes are called.
+pub(crate) fn names() -> Vec<&'static str> {
+    ENTRIES.iter().map(|entry| entry.name).collect()
+}
+
+/// The scenes that are asked for: a few without particles from files where it is to be quick.
+pub(crate) fn asked(
+    options: &Options,
+) -> Vec<impl FnOnce() -> Result<Scene, ReportError> + use<'_>> {
+    let wanted = |entry: &&Entry| {
+        options.wants_scene(entry.name)
+            && (entry.quick || !options.quick || !options.scene.is_empty())
+    };
+    let makers = ENTRIES.iter().filter(wanted);
+    makers
+        .map(|entry| || (entry.make)(options, entry.name))
+        .collect()
+}
+
+/// A body of the catalogue, in its own view.
+fn body(options: &Options, name: &'static str, of: scene::Scene) -> Scene {
+    let size = if options.quick {
+        uvec2(128, 96)
+    } else {
+        uvec2(320, 240)
+    };
+    Scene {
+        name,
+        positions: of.positions(),
+        radius: of.radius,
+        camera: of.camera(size),
+        around: Surroundings {
+            floor: -1.25,
+            wall: -3.0,
+        },
+        exact_bulk: (name == "pool-and-droplets").then(|| scene::rippled_pool(of.radius).surface),
+        exact: Some(of.surface),
+        measures: Measures::All,
+    }
+}
+
+/// A plane tilted by some degrees, from afar, so many pixels for a particle's radius.
+fn plane(options: &Options, name: &'static str, degrees: f64, pixels: f64) -> Scene {
+    let side = if options.quick { 128 } else { 240 };
+    close_up(name, scene::tilted_plane(RADIUS, degrees), side, pixels)
+}
+
+/// A ball of ten particle radii, whole.
+fn ball(_: &Options, name: &'static str, pixels: f64) -> Scene {
+    close_up(name, scene::sphere(2.0 * RADIUS), (22.0 * pixels) as u32, pixels)
+}
+
+/// How far off close-ups are taken, m: perspective hardly matters.
+const FAR: f64 = 12.0;
+
+fn close_up(name: &'static str, of: scene::Scene, side: u32, pixels: f64) -> Scene {
+    let height = f64::from(side) * of.radius / pixels;
+    let lens = Lens::Perspective {
+        fov: 2.0 * (0.5 * height / FAR).atan(),
+        near: 0.1,
+    };
+    Scene {
+        name,
+        positions: of.positions(),
+        radius: of.radius,
+        camera: Camera::new(UVec2::splat(side), lens).looking_at(DVec3::Z * FAR, DVec3::ZERO),
+        around: Surroundings {
+            floor: -4.0,
+            wall: -6.0,
+        },
+        exact: Some(of.surface),
+        exact_bulk: None,
+        measures: Measures::Surface,
+    }
+}
+
+/// A frame that the example `bake` has kept.
+fn simulated(
+    options: &Options,
+    name: &'static str,
+    eye: DVec3,
+    target: DVec3,
+) -> Result<Scene, ReportError> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets"))
+        .join(format!("{name}.xyz"));
+    let unreadable = |reason: String| ReportError::Particles {
+        path: path.clone(),
+        reason,
+    };
+    let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+    let triples: &[[f32; 3]] =
+        bytemuck::try_cast_slice(&bytes).map_err(|error| unreadable(error.to_string()))?;
+    let lens = Lens::Perspective {
+        fov: 35_f64.to_radians(),
+        near: 0.1,
+    };
+    let size = options.size.unwrap_or(if options.quick {
+        uvec2(160, 120)
+    } else {
+        uvec2(640, 480)
+    });
+    Ok(Scene {
+        name,
+        positions: triples.iter().map(|&p| Vec3::from(p)).collect(),
+        radius: RADIUS,
+        camera: Camera::new(size, lens).looking_at(eye, target),
+        around: Surroundings {
+            floor: -0.4,
+            wall: -2.5,
+        },
+        exact: None,
+        exact_bulk: None,
+        measures: Measures::All,
+    })
+}

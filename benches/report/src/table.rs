@@ -1,0 +1,135 @@
+//! What was measured, line by line.
+
+use std::{
+    fs::File,
+    path::{Path, PathBuf},
+};
+
+use serde::Serialize;
+
+use crate::{ReportError, scenes::Scene};
+
+/// One value. The columns of the CSV, in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// Number of its particles.
+    pub particles: usize,
+    /// Width of the picture in pixels.
+    pub width: u32,
+    /// Height of the picture in pixels.
+    pub height: u32,
+    /// Name of the method.
+    pub method: String,
+    /// Its parameters, where it has any that vary.
+    pub parameters: String,
+    /// What was measured.
+    pub quantity: &'static str,
+    /// Where in the picture: `all`, `interior`, `silhouette`, `grazing`.
+    pub region: &'static str,
+    /// How much.
+    pub value: f64,
+    /// Of what: `ms`, `r` (particle radii), `deg`, `1` …
+    pub unit: &'static str,
+}
+
+/// All values of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    rows: Vec<Row>,
+}
+
+/// What a value says something about.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) method: &'a str,
+    pub(crate) parameters: &'a str,
+}
+
+impl Table {
+    /// The rows in the order they were measured.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    pub(crate) fn push(&mut self, row: Row) {
+        self.rows.push(row);
+    }
+
+    pub(crate) fn add(
+        &mut self,
+        of: Subject,
+        quantity: &'static str,
+        region: &'static str,
+        value: f64,
+        unit: &'static str,
+    ) {
+        self.push(Row {
+            scene: of.scene.name,
+            particles: of.scene.positions.len(),
+            width: of.scene.camera.size.x,
+            height: of.scene.camera.size.y,
+            method: of.method.into(),
+            parameters: of.parameters.into(),
+            quantity,
+            region,
+            value,
+            unit,
+        });
+    }
+
+    /// The value of a quantity, if it was measured.
+    pub fn value(
+        &self,
+        scene: &str,
+        (method, parameters): (&str, &str),
+        quantity: &str,
+        region: &str,
+    ) -> Option<f64> {
+        let row = self.rows.iter().find(|row| {
+            row.scene == scene
+                && row.method == method
+                && row.parameters == parameters
+                && row.quantity == quantity
+                && row.region == region
+        });
+        row.map(|row| row.value)
+    }
+
+    /// Scenes in the order they were measured.
+    pub(crate) fn scenes(&self) -> Vec<&'static str> {
+        let mut scenes: Vec<_> = self.rows.iter().map(|row| row.scene).collect();
+        scenes.dedup();
+        scenes
+    }
+
+    /// Methods with their parameters for which a scene has a quantity, in order.
+    pub(crate) fn methods(&self, scene: &str, quantity: &str) -> Vec<(String, String)> {
+        let rows = self.rows.iter();
+        let mut methods: Vec<_> = rows
+            .filter(|row| row.scene == scene && row.quantity == quantity)
+            .map(|row| (row.method.clone(), row.parameters.clone()))
+            .collect();
+        methods.dedup();
+        methods
+    }
+
+    pub(crate) fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
+        let path = folder.join("speed_error.csv");
+        let failed = |source| ReportError::Write {
+            path: path.clone(),
+            source,
+        };
+        let file = File::create(&path).map_err(failed)?;
+        let mut writer = csv::Writer::from_writer(file);
+        for row in &self.rows {
+            writer
+                .serialize(row)
+                .map_err(|error| failed(std::io::Error::other(error)))?;
+        }
+        writer.flush().map_err(failed)?;
+        Ok(path)
+    }
+}

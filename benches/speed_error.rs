@@ -1,0 +1,23 @@
+//! Speed against error: every method with its parameters on every scene, in one run.
+//!
+//! `cargo bench --bench speed_error -- --out DIR`, with `--quick` for a few small pictures,
+//! `--scene NAME` and `--method NAME` for a part, `--size WxH` for the two simulated scenes. The
+//! folder gets a table (CSV), plots (SVG and PNG) and a summary.
+
+use std::process::ExitCode;
+
+use fluid_report::{Options, run};
+
+fn main() -> ExitCode {
+    match Options::parse_from(std::env::args_os()).and_then(|options| run(&options)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            if error.exit_code() == 0 {
+                print!("{error}");
+            } else {
+                eprintln!("{}", error.to_string().trim_end());
+            }
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
