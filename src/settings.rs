@@ -22,8 +22,8 @@ pub struct ScreenSpaceFluid {
     pub fresnel: Fresnel,
     /// How far behind the liquid an opaque surface still counts as wetted, so that a ray goes
     /// straight on to it and no layer of air is seen between. Unit: particle radii, range 0..=8,
-    /// default 2.5: the surface drawn lies about one and a half radii inside of the particles'
-    /// own (METHOD 2). 0: liquid and solids never touch.
+    /// default 1: what simulations leave between particles and walls. Higher: thin gaps of air
+    /// vanish. 0: liquid and solids never touch.
     pub contact: f32,
 }
 
@@ -46,7 +46,7 @@ impl ScreenSpaceFluid {
         refractions: Refractions::Four,
         search: Search::BRACKETED,
         fresnel: Fresnel::Exact,
-        contact: 2.5,
+        contact: 1.0,
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.

@@ -26,6 +26,7 @@ const BULK: SurfaceKernel = SurfaceKernel {
     spray_threshold: 0,
     anisotropic: true,
     center_shift: 0.9,
+    surface_offset: 1.15,
     max_ratio: 4.0,
     radius_scale: 1.24,
     sphere_neighbors: 0,
@@ -185,6 +186,14 @@ fn settings_out_of_range_are_named() {
                 ..default
             },
             "center_shift",
+            text,
+        );
+        named(
+            SurfaceKernel {
+                surface_offset: value,
+                ..default
+            },
+            "surface_offset",
             text,
         );
         named(

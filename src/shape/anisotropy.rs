@@ -21,6 +21,11 @@ const LANES: usize = 8;
 /// gives no direction, and from which they count as spread out.
 const SPREAD: [f32; 2] = [1e-4, 1e-3];
 
+/// Distance of a particle from the mean of its neighbours, in R, up to which it is inside and
+/// from which it is at a surface: at most 0.04 one spacing (2 radii) below a flat one, 0.15 to
+/// 0.25 at it, for particles moved by up to 0.2 spacings from a lattice.
+const SURFACE: [f32; 2] = [0.05, 0.15];
+
 /// f16 rounds the axes by up to 1/2048 and the bounding box must hold them.
 const BOX_MARGIN: f32 = 1.001;
 
@@ -135,7 +140,14 @@ impl Splatting<'_> {
             covariance[0] + covariance[3] + covariance[5],
         );
         let (axes, scale) = self.axes(covariance, blend);
-        let shift = blend * f32x8::splat(self.kernel.center_shift * self.reach());
+        let offset = self.kernel.surface_offset * self.radius;
+        let distance = lanes(&|n| Vec3::from(n.mean).length());
+        // Along the mean: inwards to it, and outwards again by a length that depends on where the
+        // surface is, not on how the particle itself lies in it.
+        let at_surface = smoothstep(SURFACE[0], SURFACE[1] - SURFACE[0], distance);
+        let outwards = f32x8::splat(offset) * at_surface / distance.fast_max(f32x8::splat(1e-6));
+        let inwards = f32x8::splat(self.kernel.center_shift * self.reach());
+        let shift = blend * (inwards - outwards);
 
         let mut flat = [0.0; 6 * LANES];
         for (entry, values) in axes.iter().enumerate() {

@@ -34,9 +34,17 @@ pub struct SurfaceKernel {
     /// How far a splat moves towards the mean of its neighbours (λ of Yu & Turk).
     ///
     /// Unit: none. Range: 0 to 1. Default: 0.9.
-    /// Higher: a smoother surface, which also sinks, by up to 2.7 radii where it is flat.
+    /// Higher: a smoother surface; it also sinks, which `surface_offset` makes up for.
     /// Lower: the particles show through as bumps.
     pub center_shift: f32,
+
+    /// How far the splats of particles at a surface move outwards again.
+    ///
+    /// Unit: particle radii. Range: 0 to 4. Default: 1.15, at which flat surfaces are drawn
+    /// where the outermost particles' own surfaces end, so that liquid touches the walls it
+    /// stands at. 0 (Yu & Turk): about that much deeper. Higher: the liquid swells, and gaps
+    /// between the outermost particles become pits.
+    pub surface_offset: f32,
 
     /// Longest axis of an ellipsoid over its shortest (`k_r` of Yu & Turk).
     ///
@@ -86,11 +94,19 @@ impl SurfaceKernel {
         spray_threshold: 8,
         anisotropic: true,
         center_shift: 0.9,
+        surface_offset: 1.15,
         max_ratio: 4.0,
         radius_scale: 1.24,
         sphere_neighbors: 8,
         full_neighbors: 16,
         skip_interior: true,
+    };
+
+    /// As in the thesis: the surface sinks, and what is hidden inside is drawn as well.
+    pub const THESIS: Self = Self {
+        surface_offset: 0.0,
+        skip_interior: false,
+        ..Self::DEFAULT
     };
 
     /// As before anisotropic kernels: spheres of one class, all of them drawn (thesis 3).
@@ -109,6 +125,7 @@ impl SurfaceKernel {
         let ranges = [
             ("neighbor_radius", self.neighbor_radius, 1.0, 10.0),
             ("center_shift", self.center_shift, 0.0, 1.0),
+            ("surface_offset", self.surface_offset, 0.0, 4.0),
             ("max_ratio", self.max_ratio, 1.0, 16.0),
             ("radius_scale", self.radius_scale, 0.1, 10.0),
         ];

@@ -33,6 +33,7 @@ pub(crate) const BULK: SurfaceKernel = SurfaceKernel {
     spray_threshold: 0,
     anisotropic: false,
     center_shift: 0.0,
+    surface_offset: 0.0,
     max_ratio: 1.0,
     radius_scale: 1.0,
     sphere_neighbors: 0,

@@ -27,6 +27,7 @@ fn the_center_moves_by_lambda_towards_the_mean() {
             R,
             &SurfaceKernel {
                 center_shift,
+                surface_offset: 0.0,
                 ..BULK
             },
         );
@@ -38,6 +39,36 @@ fn the_center_moves_by_lambda_towards_the_mean() {
             assert!(center.distance(positions[particle] + shift) < 1e-4 * R);
         }
     }
+}
+
+/// Along the mean, so many radii at the surface and none inside.
+#[test]
+fn splats_at_the_surface_move_outwards_by_the_offset() {
+    let positions = lattice(8, SPACING, 0.1);
+    let [sunken, moved] = [0.0, 1.15].map(|surface_offset| {
+        let kernel = SurfaceKernel {
+            surface_offset,
+            ..BULK
+        };
+        shape_with(&positions, R, &kernel)
+    });
+    let mut counts = [0; 2];
+    for (before, after) in sunken.splats.iter().zip(&moved.splats) {
+        assert_eq!(before.particle, after.particle);
+        let particle = after.particle as usize;
+        let (mean, _) = oracle::moments(&positions, particle, 4.0 * R);
+        let mean = Vec3::from(mean.map(|axis| axis as f32));
+        let outwards = (Vec3::from(after.center) - Vec3::from(before.center)) / R;
+        if mean.length() < 0.05 {
+            assert!(outwards.length() < 1e-4, "{outwards} inside");
+            counts[0] += 1;
+        } else if mean.length() > 0.15 {
+            let wanted = -1.15 * mean.normalize();
+            assert!(outwards.distance(wanted) < 1e-3, "{outwards}, not {wanted}");
+            counts[1] += 1;
+        }
+    }
+    assert!(counts[0] > 100 && counts[1] > 200, "{counts:?}");
 }
 
 #[test]

@@ -198,7 +198,10 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
         Method::new(DEFAULT, "", default),
         Method::new("fast", "", ScreenSpaceFluid::FAST),
         Method::new("accurate", "", ScreenSpaceFluid::ACCURATE),
-        Method::new(THESIS, "", ScreenSpaceFluid::THESIS),
+        Method {
+            kernel: SurfaceKernel::THESIS,
+            ..Method::new(THESIS, "", ScreenSpaceFluid::THESIS)
+        },
         Method {
             kernel: SurfaceKernel::EARLIER,
             ..Method::new(EARLIER, "", ScreenSpaceFluid::EARLIER)

@@ -16,6 +16,8 @@ pub struct AnisotropicKernel {
     pub neighbor_radius: f64,
     /// How far a centre moves towards the mean of its neighbours, 0 to 1 (λ).
     pub center_shift: f64,
+    /// How far particles at a surface move outwards again, in radii.
+    pub surface_offset: f64,
     /// Longest axis over the shortest (`k_r`).
     pub max_ratio: f64,
     /// Radius of the sphere with the volume of an ellipsoid, in radii.
@@ -31,6 +33,7 @@ impl Default for AnisotropicKernel {
         Self {
             neighbor_radius: 4.0,
             center_shift: 0.9,
+            surface_offset: 1.15,
             max_ratio: 4.0,
             radius_scale: 1.24,
             sphere_neighbors: 8.0,
@@ -42,6 +45,10 @@ impl Default for AnisotropicKernel {
 /// Trace of the covariance, in R², up to which the neighbours count as one point and from which
 /// they count as spread out.
 const SPREAD: [f64; 2] = [1e-4, 1e-3];
+
+/// Distance from the mean of the neighbours, in R, up to which a particle is inside and from
+/// which it is at a surface.
+const SURFACE: [f64; 2] = [0.05, 0.15];
 
 /// One ellipsoid for each particle of `radius` (m), in their order.
 pub fn anisotropic(particles: &[DVec3], radius: f64, kernel: &AnisotropicKernel) -> Vec<Ellipsoid> {
@@ -86,8 +93,11 @@ fn ellipsoid(p: DVec3, around: &[DVec3], radius: f64, kernel: &AnisotropicKernel
     let semi_axes = DVec3::ONE.lerp(clamped, blend);
     let volume_radius = radius * (1.0 + blend * (kernel.radius_scale - 1.0));
     let scale = volume_radius / semi_axes.element_product().cbrt();
+    let inwards = kernel.center_shift * kernel.neighbor_radius * mean;
+    let at_surface = smoothstep((mean.length() - SURFACE[0]) / (SURFACE[1] - SURFACE[0]));
+    let outwards = kernel.surface_offset * at_surface * mean.normalize_or_zero();
     Ellipsoid {
-        center: p + mean * (blend * kernel.center_shift * kernel.neighbor_radius * radius),
+        center: p + blend * radius * (inwards - outwards),
         matrix: vectors * DMat3::from_diagonal(semi_axes * scale) * vectors.transpose(),
     }
 }
