@@ -78,6 +78,7 @@ impl Plugin for FluidRenderPlugin {
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "functions.wgsl");
+        load_shader_library!(app, "track.wgsl");
         load_shader_library!(app, "optics.wgsl");
         load_shader_library!(app, "splat/ellipsoid.wgsl");
         load_shader_library!(app, "smooth/window.wgsl");

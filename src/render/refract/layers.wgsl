@@ -4,7 +4,6 @@
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{
     DepthMap, decode_normal, depth_map, depth_slope, nearest_scene_depth, ndc_from_pixel,
-    view_depth,
 }
 #import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
 
@@ -18,13 +17,6 @@ const BULK: u32 = 0u;
 const SPRAY: u32 = 1u;
 const FRONT: u32 = 0u;
 const BACK: u32 = 1u;
-
-// A depth on a layer; `there` is false where the layer has none.
-struct Depth {
-    there: bool,
-    // View depth, positive forward.
-    z: f32,
-}
 
 fn on_screen(pixel: vec2<f32>) -> bool {
     let uv = (pixel - view.main_pass_viewport.xy) / view.main_pass_viewport.zw;
@@ -129,11 +121,11 @@ fn quad_at(kind: u32, side: u32, pixel: vec2<f32>, map: DepthMap) -> Quad {
     return out;
 }
 
-// Device depth is affine over a plane, so it is what is interpolated.
-fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>) -> Depth {
-    let map = depth_map(ndc_from_pixel(pixel));
+// Device depth, 0 where the layer has none. It is affine over a plane, so it is what is
+// interpolated.
+fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>, map: DepthMap) -> f32 {
     let quad = quad_at(kind, side, pixel, map);
-    return Depth(quad.there, view_depth(map, dot(quad.weights, quad.depths)));
+    return select(0.0, dot(quad.weights, quad.depths), quad.there);
 }
 
 // Outward unit normal. A layer that has none there gives the direction to the viewer.
@@ -151,7 +143,7 @@ fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
     return select(vec3(0.0, 0.0, select(1.0, -1.0, side == BACK)), sum / size, size > 1e-6);
 }
 
-fn scene_view_depth(pixel: vec2<f32>) -> Depth {
-    let d = nearest_scene_depth(vec2<i32>(pixel));
-    return Depth(d > 0.0, view_depth(depth_map(ndc_from_pixel(pixel)), d));
+// Device depth of the opaque scene, 0 where there is nothing.
+fn scene_depth_at(pixel: vec2<f32>) -> f32 {
+    return nearest_scene_depth(vec2<i32>(pixel));
 }

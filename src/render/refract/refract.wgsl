@@ -3,13 +3,13 @@
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
     device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
-    nearest_scene_depth, ndc_from_pixel, view_from_device, view_ray,
+    nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_from_device, view_ray,
 }
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
 #import bevy_fluid::render::refract::layers::{
     BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal, on_screen,
 }
-#import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, pixel_of, search}
+#import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
 #import bevy_fluid::render::types::{
     INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
@@ -64,6 +64,10 @@ fn cross_interface(path: ptr<function, Path>, n: vec3<f32>, entering: bool) -> b
     (*path).transmission *= 1.0 - at.reflectance;
     (*path).direction = at.refracted;
     return true;
+}
+
+fn pixel_of(position: vec3<f32>) -> vec2<f32> {
+    return pixel_from_ndc(device_from_view(position).xy);
 }
 
 fn advance(path: ptr<function, Path>, t: f32) {
