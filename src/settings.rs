@@ -200,8 +200,8 @@ impl PlaneFit {
     pub const DEFAULT: Self = Self {
         form: PlaneFitForm::Separable,
         half_taps: 4,
-        iterations: 3,
-        window: Window::Radii(0.65),
+        iterations: 1,
+        window: Window::Radii(1.3),
         range: 2.0,
         bound: 2.0,
     };
@@ -209,6 +209,7 @@ impl PlaneFit {
     /// As published: total least squares over 9×9 pixels, three times.
     pub const THESIS: Self = Self {
         form: PlaneFitForm::TotalLeastSquares,
+        iterations: 3,
         window: Window::Pixels,
         ..Self::DEFAULT
     };

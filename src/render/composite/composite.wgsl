@@ -66,42 +66,51 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
     return Track(start, start + fraction * way);
 }
 
-fn pixel_on(track: Track, s: f32) -> vec2<f32> {
-    return pixel_from_ndc(mix(track.start.xy, track.end.xy, s));
+// A track on screen: (pixel, device depth) at its start, and the way to its end.
+struct Way {
+    start: vec3<f32>,
+    step: vec3<f32>,
 }
 
-fn scene_on(track: Track, s: f32) -> f32 {
+fn way_of(track: Track) -> Way {
+    let start = vec3(pixel_from_ndc(track.start.xy), track.start.z);
+    let end = vec3(pixel_from_ndc(track.end.xy), track.end.z);
+    return Way(start, end - start);
+}
+
+fn scene_depth_on(way: Way, s: f32) -> f32 {
     let high = vec2<i32>(view.main_pass_viewport.xy + view.main_pass_viewport.zw) - 1;
     let low = vec2<i32>(view.main_pass_viewport.xy);
-    return nearest_scene_depth(clamp(vec2<i32>(pixel_on(track, s)), low, high));
+    return nearest_scene_depth(clamp(vec2<i32>(way.start.xy + s * way.step.xy), low, high));
 }
 
 // The scene's colour where the ray meets its depth, else the environment.
 fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
-    let way = track(position, direction);
-    let map = depth_map(way.start.xy);
-    let pixels = length(pixel_on(way, 1.0) - pixel_on(way, 0.0));
-    let steps = clamp(ceil(pixels / STEP_PIXELS), 4.0, MAX_STEPS);
+    let track = track(position, direction);
+    let way = way_of(track);
+    let steps = clamp(ceil(length(way.step.xy) / STEP_PIXELS), 4.0, MAX_STEPS);
     var before = 0.0;
     for (var i = 1.0; i <= steps; i += 1.0) {
         var s = i / steps;
-        let ray_depth = mix(way.start.z, way.end.z, s);
-        let scene_depth = scene_on(way, s);
-        // Reverse z: behind something. It is met if it lies within the step, not if it covers
-        // the ray from nearer the eye.
-        let entry = view_depth(map, mix(way.start.z, way.end.z, before));
-        let slack = 4.0 * body.radius + 0.05 * entry;
-        if scene_depth > ray_depth && view_depth(map, scene_depth) >= entry - slack {
-            var low = before;
-            for (var k = 0; k < REFINEMENTS; k += 1) {
-                let middle = 0.5 * (low + s);
-                if scene_on(way, middle) > mix(way.start.z, way.end.z, middle) {
-                    s = middle;
-                } else {
-                    low = middle;
+        let scene_depth = scene_depth_on(way, s);
+        // Reverse z: behind something.
+        if scene_depth > way.start.z + s * way.step.z {
+            let map = depth_map(track.start.xy);
+            let entry = view_depth(map, way.start.z + before * way.step.z);
+            let slack = 4.0 * body.radius + 0.05 * entry;
+            // It is met if it lies within the step, not if it covers the ray from nearer the eye.
+            if view_depth(map, scene_depth) >= entry - slack {
+                var low = before;
+                for (var k = 0; k < REFINEMENTS; k += 1) {
+                    let middle = 0.5 * (low + s);
+                    if scene_depth_on(way, middle) > way.start.z + middle * way.step.z {
+                        s = middle;
+                    } else {
+                        low = middle;
+                    }
                 }
+                return color_at(way.start.xy + s * way.step.xy);
             }
-            return color_at(pixel_on(way, s));
         }
         before = s;
     }

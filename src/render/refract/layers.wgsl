@@ -128,19 +128,54 @@ fn layer_depth(kind: u32, side: u32, pixel: vec2<f32>, map: DepthMap) -> f32 {
     return select(0.0, dot(quad.weights, quad.depths), quad.there);
 }
 
-// Outward unit normal. A layer that has none there gives the direction to the viewer.
+// Codes of the normals about `base`, in the order of `textureGather`: x of all four, then y.
+struct Codes {
+    x: vec4<f32>,
+    y: vec4<f32>,
+}
+
+fn gather_codes(kind: u32, side: u32, base: vec2<f32>) -> Codes {
+#ifdef BULK_LAYERS
+    if kind == BULK {
+        let uv = (base + 1.0) / vec2<f32>(textureDimensions(bulk_normals));
+        if side == FRONT {
+            return Codes(
+                textureGather(0, bulk_normals, nearest_sampler, uv),
+                textureGather(1, bulk_normals, nearest_sampler, uv),
+            );
+        }
+        return Codes(
+            textureGather(2, bulk_normals, nearest_sampler, uv),
+            textureGather(3, bulk_normals, nearest_sampler, uv),
+        );
+    }
+#endif
+#ifdef SPRAY_LAYERS
+    if kind == SPRAY {
+        let uv = (base + 1.0) / vec2<f32>(textureDimensions(spray_normals));
+        if side == FRONT {
+            return Codes(
+                textureGather(0, spray_normals, nearest_sampler, uv),
+                textureGather(1, spray_normals, nearest_sampler, uv),
+            );
+        }
+        return Codes(
+            textureGather(2, spray_normals, nearest_sampler, uv),
+            textureGather(3, spray_normals, nearest_sampler, uv),
+        );
+    }
+#endif
+    return Codes(vec4(0.0), vec4(0.0));
+}
+
+// Outward unit normal. A layer that has none there gives the direction to the viewer. Codes are
+// interpolated as they are: all are of normals towards the viewer, where the mapping has no fold.
 fn layer_normal(kind: u32, side: u32, pixel: vec2<f32>) -> vec3<f32> {
     let inside = clamp_to_view(pixel);
     let quad = quad_at(kind, side, inside, depth_map(ndc_from_pixel(inside)));
-    var sum = vec3(0.0);
-    for (var i = 0u; i < 4u; i += 1u) {
-        if quad.weights[i] > 0.0 {
-            let corner = vec2<i32>(vec2(CORNERS_X[i], CORNERS_Y[i]));
-            sum += quad.weights[i] * load_normal(kind, side, quad.base + corner);
-        }
-    }
-    let size = length(sum);
-    return select(vec3(0.0, 0.0, select(1.0, -1.0, side == BACK)), sum / size, size > 1e-6);
+    let codes = gather_codes(kind, side, vec2<f32>(quad.base));
+    let normal = decode_normal(vec2(dot(quad.weights, codes.x), dot(quad.weights, codes.y)));
+    return select(normal, -normal, side == BACK);
 }
 
 // Device depth of the opaque scene, 0 where there is nothing.
