@@ -86,7 +86,10 @@ mod tests {
     fn texels_without_liquid_have_no_ray() {
         assert_eq!(ExitRay::unpack([0; 4]), None);
         let ray = ExitRay::unpack([0x8000_ffff, 0.5_f32.to_bits(), 0, 0x80e2_0051]).unwrap();
-        assert_eq!(ray.searches[..2], [SearchStatus::Hit, SearchStatus::TotalReflection]);
+        assert_eq!(
+            ray.searches[..2],
+            [SearchStatus::Hit, SearchStatus::TotalReflection]
+        );
         assert_eq!((ray.interfaces, ray.evaluations, ray.direct), (2, 7, false));
         assert_eq!((ray.direction, ray.device_depth), (Vec3::Z, 0.5));
         assert!((ray.uv - vec2(1.0, 0.5)).length() < 1e-4);

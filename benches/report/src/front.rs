@@ -68,9 +68,8 @@ pub(crate) fn points(table: &Table, scene: &str, trade: &Trade) -> Vec<Point> {
     let methods = table.methods(scene, trade.error).into_iter();
     let mut points: Vec<_> = methods
         .filter_map(|(method, parameters)| {
-            let value = |quantity, region| {
-                table.value(scene, (&method, &parameters), quantity, region)
-            };
+            let value =
+                |quantity, region| table.value(scene, (&method, &parameters), quantity, region);
             let time = value(trade.time, "all").filter(|time| *time > 0.0)?;
             let error = value(trade.error, trade.region).filter(|error| *error > 0.0)?;
             Some(Point {
@@ -99,9 +98,7 @@ mod tests {
     fn what_is_slower_and_worse_is_not_on_the_front() {
         let mut table = Table::default();
         for (method, time, error) in [("a", 1.0, 3.0), ("b", 2.0, 4.0), ("c", 3.0, 1.0)] {
-            for (quantity, region, value) in
-                [("time_gpu", "all", time), ("flip", "all", error)]
-            {
+            for (quantity, region, value) in [("time_gpu", "all", time), ("flip", "all", error)] {
                 table.push(crate::Row {
                     scene: "s",
                     particles: 1,

@@ -55,11 +55,7 @@ pub fn run(options: &Options) -> Result<(), ReportError> {
 }
 
 /// Measures a scene and tells which adapter did it.
-fn measure(
-    table: &mut Table,
-    scene: &Scene,
-    options: &Options,
-) -> Result<String, ReportError> {
+fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<String, ReportError> {
     let progress = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{prefix:20} {wide_bar} {pos}/{len} {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
@@ -69,61 +65,83 @@ fn measure(
         let named = |method: &Method| options.wants_method(method.name);
         methods.into_iter().filter(named).collect()
     };
-    let smoothings = wanted(methods::smoothings(options.quick));
-    let frames = match scene.measures {
-        Measures::Surface => Vec::new(),
-        Measures::All => wanted(methods::frames(options.quick)),
+    let (smoothings, frames) = match scene.measures {
+        Measures::Surface => (methods::smoothings(options.quick), Vec::new()),
+        Measures::All => (
+            methods::smoothings(options.quick),
+            methods::frames(options.quick),
+        ),
+        Measures::Times => (Vec::new(), methods::frames(true)),
     };
-
-    progress.set_message("truth");
+    let (smoothings, frames) = (wanted(smoothings), wanted(frames));
     let mut rig = Rig::new(scene)?;
+    if scene.measures != Measures::Times {
+        errors(
+            table,
+            scene,
+            (&smoothings, &frames),
+            &mut rig,
+            options,
+            &progress,
+        )?;
+    }
+    // Of close-ups one size says enough of speed.
+    if scene.measures != Measures::Surface || scene.name.ends_with("-6px") {
+        progress.set_message("times");
+        let turns = times::turns(&adapter_name(&rig.app), options.quick);
+        let mut timed: Vec<Method> = smoothings.into_iter().chain(frames).collect();
+        if scene.name == "wave" && !options.quick && options.method.is_empty() {
+            timed.extend([false, true].into_iter().flat_map(methods::table));
+            methods::drop_twins(&mut timed);
+        }
+        progress.set_position(0);
+        progress.set_length(timed.len() as u64 * u64::from(turns + 1));
+        times::measure(table, scene, &timed, &mut rig, turns, &progress)?;
+    }
+    progress.finish_with_message("done");
+    Ok(adapter_name(&rig.app))
+}
+
+/// Everything but the times.
+fn errors(
+    table: &mut Table,
+    scene: &Scene,
+    (smoothings, frames): (&[Method], &[Method]),
+    rig: &mut Rig,
+    options: &Options,
+    progress: &ProgressBar,
+) -> Result<(), ReportError> {
+    progress.set_message("truth");
     let splats = Splats::of(scene)?;
     let truth = Truth::of(scene, &splats);
     rig.show(&methods::smoothings(true)[0])?;
-    surfaces::measure_layers(table, scene, &splats, &rig)?;
+    surfaces::measure_layers(table, scene, &splats, rig)?;
     let regions = surfaces::regions(scene, &truth, &rig.seen()?.bulk);
 
     progress.set_length((smoothings.len() + frames.len()) as u64);
     progress.set_message("errors");
-    for method in &smoothings {
+    for method in smoothings {
         rig.show(method)?;
-        surfaces::measure(table, scene, &truth, &regions, method, &rig)?;
+        surfaces::measure(table, scene, &truth, &regions, method, rig)?;
         progress.inc(1);
     }
-    if !frames.is_empty() {
-        let picture = TruePicture::of(scene, &truth, &regions);
-        for method in &frames {
-            rig.show(method)?;
-            let got = rig.picture()?;
-            let subject = Subject {
-                scene,
-                method: method.name,
-                parameters: &method.parameters,
-            };
-            pictures::measure(table, subject, &picture, &regions, &got)?;
-            surfaces::measure(table, scene, &truth, &regions, method, &rig)?;
-            progress.inc(1);
-        }
-        pictures::ablate(table, scene, &picture, &regions, &mut rig)?;
-        pictures::measure_furnace(table, scene, &mut rig)?;
-        searches::measure(table, scene, &mut rig, options.quick)?;
+    if frames.is_empty() {
+        return Ok(());
     }
-
-    // Of close-ups one size says enough of speed.
-    if scene.measures == Measures::Surface && !scene.name.ends_with("-6px") {
-        progress.finish_with_message("done");
-        return Ok(adapter_name(&rig.app));
+    let picture = TruePicture::of(scene, &truth, &regions);
+    for method in frames {
+        rig.show(method)?;
+        let got = rig.picture()?;
+        let subject = Subject {
+            scene,
+            method: method.name,
+            parameters: &method.parameters,
+        };
+        pictures::measure(table, subject, &picture, &got)?;
+        surfaces::measure(table, scene, &truth, &regions, method, rig)?;
+        progress.inc(1);
     }
-    progress.set_message("times");
-    let turns = times::turns(&adapter_name(&rig.app), options.quick);
-    let mut timed: Vec<Method> = smoothings.into_iter().chain(frames).collect();
-    if scene.name == "wave" && !options.quick && options.method.is_empty() {
-        timed.extend([false, true].into_iter().flat_map(methods::table));
-        timed.dedup_by_key(|method| method.label());
-    }
-    progress.set_position(0);
-    progress.set_length(timed.len() as u64 * u64::from(turns + 1));
-    times::measure(table, scene, &timed, &mut rig, turns, &progress)?;
-    progress.finish_with_message("done");
-    Ok(adapter_name(&rig.app))
+    pictures::ablate(table, scene, &picture, rig)?;
+    pictures::measure_furnace(table, scene, rig)?;
+    searches::measure(table, scene, rig, options.quick)
 }

@@ -1,5 +1,7 @@
 //! The methods beside each other, each with its parameters.
 
+use std::collections::HashSet;
+
 use bevy_fluid::{
     Bilateral, CurvatureFlow, Fresnel, NarrowRange, NormalAverage, PlaneFit, PlaneFitForm,
     Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Window,
@@ -52,13 +54,14 @@ pub(crate) const EARLIER: &str = "thesis-earlier";
 
 /// What methods are called.
 pub(crate) fn names() -> Vec<&'static str> {
+    let mut known = HashSet::new();
     let mut names: Vec<_> = smoothings(false)
         .iter()
         .chain(&frames(false))
         .chain(&searches(false))
         .map(|method| method.name)
         .collect();
-    names.dedup();
+    names.retain(|name| known.insert(*name));
     names
 }
 
@@ -130,8 +133,18 @@ pub(crate) fn smoothings(quick: bool) -> Vec<Method> {
         methods.push(fit(Separable, half_taps, iterations, Window::Radii(radii)));
     }
     for (half_taps, iterations, radii) in [(2, 2, 1.3), (4, 2, 0.65), (4, 3, 0.65), (4, 3, 1.0)] {
-        methods.push(fit(DeviceDepth, half_taps, iterations, Window::Radii(radii)));
-        methods.push(fit(TotalLeastSquares, half_taps, iterations, Window::Radii(radii)));
+        methods.push(fit(
+            DeviceDepth,
+            half_taps,
+            iterations,
+            Window::Radii(radii),
+        ));
+        methods.push(fit(
+            TotalLeastSquares,
+            half_taps,
+            iterations,
+            Window::Radii(radii),
+        ));
     }
     for (iterations, radii) in [(5, 1.0), (11, 0.5), (22, 0.5)] {
         methods.push(bilateral(3, iterations, Window::Radii(radii)));
@@ -157,19 +170,28 @@ pub(crate) fn smoothings(quick: bool) -> Vec<Method> {
         let smoothing = Smoothing::NormalAverage(average);
         methods.push(Method::smoothing(NORMAL_AVERAGE, parameters, smoothing));
     }
-    methods.dedup_by_key(|method| method.label());
+    drop_twins(&mut methods);
     methods
 }
 
+/// Keeps the first of methods of equal name and parameters.
+pub(crate) fn drop_twins(methods: &mut Vec<Method>) {
+    let mut labels = HashSet::new();
+    methods.retain(|method| labels.insert(method.label()));
+}
+
 /// Half taps, iterations, half window in radii.
-const SEPARABLE_GRID: [(u32, u32, f32); 12] = [
+const SEPARABLE_GRID: [(u32, u32, f32); 15] = [
     (2, 1, 1.3),
+    (3, 1, 1.3),
     (2, 2, 0.65),
     (2, 2, 1.3),
     (3, 2, 1.0),
     (3, 3, 0.65),
     (3, 3, 1.0),
+    (4, 1, 1.0),
     (4, 1, 1.3),
+    (4, 1, 1.7),
     (4, 2, 0.65),
     (4, 2, 1.0),
     (4, 2, 1.3),
@@ -260,7 +282,12 @@ pub(crate) fn table(bilaterally: bool) -> Vec<Method> {
         if bilaterally {
             bilateral(half, iterations, Window::Pixels)
         } else {
-            fit(PlaneFitForm::TotalLeastSquares, half, iterations, Window::Pixels)
+            fit(
+                PlaneFitForm::TotalLeastSquares,
+                half,
+                iterations,
+                Window::Pixels,
+            )
         }
     };
     halves

@@ -78,9 +78,9 @@ impl Options {
 }
 
 fn size(word: &str) -> Result<UVec2, String> {
-    let sides = word.split_once('x').and_then(|(width, height)| {
-        Some(UVec2::new(width.parse().ok()?, height.parse().ok()?))
-    });
+    let sides = word
+        .split_once('x')
+        .and_then(|(width, height)| Some(UVec2::new(width.parse().ok()?, height.parse().ok()?)));
     sides
         .filter(|size| size.min_element() >= 16 && size.max_element() <= 8192)
         .ok_or_else(|| "not WIDTHxHEIGHT with sides of 16 to 8192 pixels".into())

@@ -25,6 +25,8 @@ pub(crate) struct TruePicture {
     image: Image<DVec3>,
     /// Whether all of it is there, so that perceptual metrics mean something.
     whole: bool,
+    /// Where it is judged, by name; `deep` is where light meets more than two interfaces.
+    regions: Vec<(&'static str, Image<bool>)>,
 }
 
 impl TruePicture {
@@ -34,7 +36,17 @@ impl TruePicture {
         let objects = scene.around.objects();
         let tracer = Tracer::truth(world(truth.surface(), &objects), water());
         let whole = matches!(truth, Truth::Exact(_));
-        let [(_, all), ..] = named(regions);
+        let mut regions = named(regions).to_vec();
+        let all = regions[0].1.clone();
+        if whole {
+            let tracer = Tracer {
+                interfaces: 3,
+                ..Tracer::renderer(world(truth.surface(), &objects), water())
+            };
+            let is_deep = |pixel| tracer.path(scene.camera.pixel_ray(pixel)).vertices.len() > 2;
+            let deep = Image::from_fn(scene.camera.size, |pixel| *all.get(pixel) && is_deep(pixel));
+            regions.push(("deep", deep));
+        }
         let image = Image::from_fn(scene.camera.size, |pixel| {
             if whole || *all.get(pixel) {
                 encode_srgb(tracer.radiance(scene.camera.pixel_ray(pixel)))
@@ -42,7 +54,11 @@ impl TruePicture {
                 DVec3::ZERO
             }
         });
-        Self { image, whole }
+        Self {
+            image,
+            whole,
+            regions,
+        }
     }
 }
 
@@ -59,7 +75,6 @@ pub(crate) fn measure(
     table: &mut Table,
     subject: Subject,
     truth: &TruePicture,
-    regions: &Regions,
     got: &Image<DVec3>,
 ) -> Result<(), ReportError> {
     let wrong = |source| metric(subject, source);
@@ -71,19 +86,21 @@ pub(crate) fn measure(
     } else {
         None
     };
-    for (region, mask) in named(regions) {
+    for (region, mask) in &truth.regions {
         if !mask.pixels().contains(&true) {
             continue;
         }
         // Of pictures that do not differ at all it is infinite.
-        let peak = psnr(&truth.image, got, Some(&mask)).map_err(wrong)?.min(99.0);
+        let peak = psnr(&truth.image, got, Some(mask))
+            .map_err(wrong)?
+            .min(99.0);
         table.add(subject, "psnr", region, peak, "dB");
         let rmse = 10_f64.powf(-peak / 20.0);
         table.add(subject, "picture_rmse", region, rmse, "1");
         if let Some((flip, ssim)) = &maps {
-            let flip = mean("FLIP", flip, Some(&mask)).map_err(wrong)?;
+            let flip = mean("FLIP", flip, Some(mask)).map_err(wrong)?;
             table.add(subject, "flip", region, flip, "1");
-            let ssim = mean("SSIM", ssim, Some(&mask)).map_err(wrong)?;
+            let ssim = mean("SSIM", ssim, Some(mask)).map_err(wrong)?;
             table.add(subject, "ssim", region, ssim, "1");
         }
     }
@@ -109,7 +126,6 @@ pub(crate) fn ablate(
     table: &mut Table,
     scene: &Scene,
     truth: &TruePicture,
-    regions: &Regions,
     rig: &mut Rig,
 ) -> Result<(), ReportError> {
     let method = default();
@@ -123,14 +139,20 @@ pub(crate) fn ablate(
     let drawn = rig.picture()?;
     let exact_search = through_layers(scene, &seen, &method);
     let of = subject("our layers, exact search");
-    measure(table, of, truth, regions, &exact_search)?;
-    measure(table, subject("our layers, our search"), truth, regions, &drawn)?;
+    measure(table, of, truth, &exact_search)?;
+    measure(table, subject("our layers, our search"), truth, &drawn)?;
     // Against each other: what the search alone is off by.
     let alone = TruePicture {
         image: exact_search,
         whole: true,
+        regions: truth.regions.clone(),
     };
-    measure(table, subject("our search against exact search"), &alone, regions, &drawn)?;
+    measure(
+        table,
+        subject("our search against exact search"),
+        &alone,
+        &drawn,
+    )?;
     let bulk = scene.exact_bulk.as_deref().or(scene.exact.as_deref());
     if let Some(bulk) = bulk {
         let spans = fluid_reference::layers(&scene.camera, bulk);
@@ -138,7 +160,7 @@ pub(crate) fn ablate(
         rig.frame();
         let drawn = rig.picture()?;
         rig.put_exact_layers(None);
-        measure(table, subject("exact layers, our search"), truth, regions, &drawn)?;
+        measure(table, subject("exact layers, our search"), truth, &drawn)?;
     }
     Ok(())
 }

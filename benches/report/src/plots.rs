@@ -4,9 +4,15 @@ use std::path::Path;
 
 use image::{ImageBuffer, Rgb};
 use plotters::{
-    coord::Shift,
+    coord::{
+        Shift,
+        ranged1d::{DefaultFormatting, Ranged},
+    },
     prelude::*,
-    style::{FontStyle, register_font, text_anchor::{HPos, Pos, VPos}},
+    style::{
+        FontStyle, register_font,
+        text_anchor::{HPos, Pos, VPos},
+    },
 };
 
 use crate::{
@@ -30,7 +36,11 @@ const COLORS: [RGBColor; 8] = [
 /// Draws every front that the table has, as SVG and PNG.
 pub(crate) fn draw(table: &Table, folder: &Path) -> Result<(), ReportError> {
     // Fails only where the font is none.
-    let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    let _ = register_font(
+        "sans-serif",
+        FontStyle::Normal,
+        epaint_default_fonts::UBUNTU_LIGHT,
+    );
     for scene in table.scenes() {
         for trade in &TRADES {
             let points = points(table, scene, trade);
@@ -67,6 +77,19 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> std::ops::Range<f64> {
     low / 1.3..high * 1.5
 }
 
+/// A logarithmic axis with labels at 1, 2, 5, 10, 20, 50 …
+fn decades(
+    range: std::ops::Range<f64>,
+) -> impl Ranged<ValueType = f64, FormatOption = DefaultFormatting> {
+    let first = range.start.log10().floor() as i32;
+    let last = range.end.log10().ceil() as i32;
+    let labels = (first..=last)
+        .flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10_f64.powi(power)))
+        .filter(|label| range.contains(label))
+        .collect::<Vec<_>>();
+    range.log_scale().with_key_points(labels)
+}
+
 fn draw_front<DB: DrawingBackend>(
     area: &DrawingArea<DB, Shift>,
     scene: &str,
@@ -82,8 +105,8 @@ fn draw_front<DB: DrawingBackend>(
         .x_label_area_size(46)
         .y_label_area_size(70)
         .build_cartesian_2d(
-            range(points.iter().map(|p| p.time)).log_scale(),
-            range(points.iter().map(|p| p.error)).log_scale(),
+            decades(range(points.iter().map(|p| p.time))),
+            decades(range(points.iter().map(|p| p.error))),
         )
         .map_err(text)?;
     chart

@@ -120,7 +120,9 @@ impl Rig {
         if on {
             let white = Surroundings::furnace(world);
             world.entity_mut(self.eye).insert(white);
-            world.entity_mut(self.fluid).insert(FluidMaterial::CLEAR_WATER);
+            world
+                .entity_mut(self.fluid)
+                .insert(FluidMaterial::CLEAR_WATER);
         } else {
             let sky = Surroundings::sky(world);
             world.entity_mut(self.eye).insert(sky);
@@ -154,7 +156,11 @@ impl Rig {
                 depth: image(size, &depths, |data, UVec2 { x, y }| {
                     let [front, stored_back] = data.f32x2(x, y);
                     let depth = if back { -stored_back } else { front };
-                    let there = if back { stored_back > -2.0 } else { front > 0.0 };
+                    let there = if back {
+                        stored_back > -2.0
+                    } else {
+                        front > 0.0
+                    };
                     there.then_some(f64::from(depth))
                 }),
                 normals: Some(image(size, &normals, |data, UVec2 { x, y }| {
@@ -162,8 +168,7 @@ impl Rig {
                     // Both are stored towards the viewer.
                     let code = if back { [c, d] } else { [a, b] };
                     let out = decode_normal(code).as_dvec3() * if back { -1.0 } else { 1.0 };
-                    (code != [0.0; 2])
-                        .then(|| world_from_view.transform_vector3(out))
+                    (code != [0.0; 2]).then(|| world_from_view.transform_vector3(out))
                 })),
             };
             Ok(Layer {

@@ -29,6 +29,8 @@ pub(crate) enum Measures {
     Surface,
     /// All.
     All,
+    /// The presets' times alone.
+    Times,
 }
 
 /// A scene by name, not yet made.
@@ -49,34 +51,68 @@ const fn entry(
 /// Particle radius of bodies that fill the picture, m.
 const RADIUS: f64 = 0.025;
 
-const ENTRIES: [Entry; 27] = [
-    entry("slab", false, |o, n| Ok(body(o, n, scene::slab(RADIUS, 30.0)))),
-    entry("tilted-plane", false, |o, n| Ok(body(o, n, scene::tilted_plane(RADIUS, 60.0)))),
+const ENTRIES: [Entry; 29] = [
+    entry("slab", false, |o, n| {
+        Ok(body(o, n, scene::slab(RADIUS, 30.0)))
+    }),
+    entry("tilted-plane", false, |o, n| {
+        Ok(body(o, n, scene::tilted_plane(RADIUS, 60.0)))
+    }),
     entry("sphere", true, |o, n| Ok(body(o, n, scene::sphere(RADIUS)))),
-    entry("rippled-pool", false, |o, n| Ok(body(o, n, scene::rippled_pool(RADIUS)))),
-    entry("half-filled-box", false, |o, n| Ok(body(o, n, scene::half_filled_box(RADIUS)))),
-    entry("two-spheres", false, |o, n| Ok(body(o, n, scene::two_spheres(RADIUS)))),
-    entry("pool-and-droplets", true, |o, n| Ok(body(o, n, scene::pool_and_droplets(RADIUS)))),
-    entry("thin-sheet", false, |o, n| Ok(body(o, n, scene::thin_sheet(RADIUS)))),
-    entry("depth-step", true, |o, n| Ok(body(o, n, scene::depth_step(RADIUS)))),
+    entry("rippled-pool", false, |o, n| {
+        Ok(body(o, n, scene::rippled_pool(RADIUS)))
+    }),
+    entry("half-filled-box", false, |o, n| {
+        Ok(body(o, n, scene::half_filled_box(RADIUS)))
+    }),
+    entry("two-spheres", false, |o, n| {
+        Ok(body(o, n, scene::two_spheres(RADIUS)))
+    }),
+    entry("pool-and-droplets", true, |o, n| {
+        Ok(body(o, n, scene::pool_and_droplets(RADIUS)))
+    }),
+    entry("thin-sheet", false, |o, n| {
+        Ok(body(o, n, scene::thin_sheet(RADIUS)))
+    }),
+    entry("depth-step", true, |o, n| {
+        Ok(body(o, n, scene::depth_step(RADIUS)))
+    }),
     entry("plane-0-at-3px", false, |o, n| Ok(plane(o, n, 0.0, 3.0))),
     entry("plane-0-at-6px", true, |o, n| Ok(plane(o, n, 0.0, 6.0))),
     entry("plane-0-at-12px", false, |o, n| Ok(plane(o, n, 0.0, 12.0))),
     entry("plane-0-at-30px", false, |o, n| Ok(plane(o, n, 0.0, 30.0))),
     entry("plane-60-at-3px", false, |o, n| Ok(plane(o, n, 60.0, 3.0))),
     entry("plane-60-at-6px", false, |o, n| Ok(plane(o, n, 60.0, 6.0))),
-    entry("plane-60-at-12px", false, |o, n| Ok(plane(o, n, 60.0, 12.0))),
-    entry("plane-60-at-30px", false, |o, n| Ok(plane(o, n, 60.0, 30.0))),
+    entry("plane-60-at-12px", false, |o, n| {
+        Ok(plane(o, n, 60.0, 12.0))
+    }),
+    entry("plane-60-at-30px", false, |o, n| {
+        Ok(plane(o, n, 60.0, 30.0))
+    }),
     entry("plane-80-at-3px", false, |o, n| Ok(plane(o, n, 80.0, 3.0))),
     entry("plane-80-at-6px", true, |o, n| Ok(plane(o, n, 80.0, 6.0))),
-    entry("plane-80-at-12px", false, |o, n| Ok(plane(o, n, 80.0, 12.0))),
-    entry("plane-80-at-30px", false, |o, n| Ok(plane(o, n, 80.0, 30.0))),
+    entry("plane-80-at-12px", false, |o, n| {
+        Ok(plane(o, n, 80.0, 12.0))
+    }),
+    entry("plane-80-at-30px", false, |o, n| {
+        Ok(plane(o, n, 80.0, 30.0))
+    }),
     entry("sphere-at-3px", false, |o, n| Ok(ball(o, n, 3.0))),
     entry("sphere-at-6px", true, |o, n| Ok(ball(o, n, 6.0))),
     entry("sphere-at-12px", false, |o, n| Ok(ball(o, n, 12.0))),
     entry("sphere-at-30px", false, |o, n| Ok(ball(o, n, 30.0))),
-    entry("wave", false, |o, n| simulated(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))),
-    entry("step", false, |o, n| simulated(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))),
+    entry("wave", false, |o, n| {
+        simulated(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))
+    }),
+    entry("step", false, |o, n| {
+        simulated(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))
+    }),
+    entry("wave-1024x768", false, |o, n| {
+        larger(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))
+    }),
+    entry("step-1024x768", false, |o, n| {
+        larger(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))
+    }),
 ];
 
 /// What scenes are called.
@@ -128,7 +164,12 @@ fn plane(options: &Options, name: &'static str, degrees: f64, pixels: f64) -> Sc
 
 /// A ball of ten particle radii, whole.
 fn ball(_: &Options, name: &'static str, pixels: f64) -> Scene {
-    close_up(name, scene::sphere(2.0 * RADIUS), (22.0 * pixels) as u32, pixels)
+    close_up(
+        name,
+        scene::sphere(2.0 * RADIUS),
+        (22.0 * pixels) as u32,
+        pixels,
+    )
 }
 
 /// How far off close-ups are taken, m: perspective hardly matters.
@@ -155,6 +196,21 @@ fn close_up(name: &'static str, of: scene::Scene, side: u32, pixels: f64) -> Sce
     }
 }
 
+/// Ends the names of scenes in the thesis's second size.
+const LARGER: &str = "-1024x768";
+
+fn larger(
+    options: &Options,
+    name: &'static str,
+    eye: DVec3,
+    target: DVec3,
+) -> Result<Scene, ReportError> {
+    let mut scene = simulated(options, name, eye, target)?;
+    scene.camera.size = uvec2(1024, 768);
+    scene.measures = Measures::Times;
+    Ok(scene)
+}
+
 /// A frame that the example `bake` has kept.
 fn simulated(
     options: &Options,
@@ -163,7 +219,7 @@ fn simulated(
     target: DVec3,
 ) -> Result<Scene, ReportError> {
     let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets"))
-        .join(format!("{name}.xyz"));
+        .join(format!("{}.xyz", name.trim_end_matches(LARGER)));
     let unreadable = |reason: String| ReportError::Particles {
         path: path.clone(),
         reason,

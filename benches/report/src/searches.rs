@@ -101,12 +101,27 @@ fn compare(
     let wrong = |source| metric(subject, source);
     let report = search_report(&searched, scene.radius).map_err(wrong)?;
     let with_truth = searched.iter().filter_map(|s| Some((s, s.truth?)));
-    let right = with_truth.clone().filter(|(s, truth)| is_right(s, *truth, scene.radius)).count();
+    let right = with_truth
+        .clone()
+        .filter(|(s, truth)| is_right(s, *truth, scene.radius))
+        .count();
     let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     let met = with_truth.count();
     table.add(subject, "search_right", "all", share(right, met), "1");
-    table.add(subject, "search_missed", "all", share(report.missed, met), "1");
-    table.add(subject, "search_invented", "all", share(report.invented, searched.len()), "1");
+    table.add(
+        subject,
+        "search_missed",
+        "all",
+        share(report.missed, met),
+        "1",
+    );
+    table.add(
+        subject,
+        "search_invented",
+        "all",
+        share(report.invented, searched.len()),
+        "1",
+    );
     for (status, quantity) in Status::ALL.into_iter().zip(STATUSES) {
         table.add(subject, quantity, "all", report.rate(status), "1");
     }

@@ -71,7 +71,9 @@ pub(crate) fn named(regions: &Regions) -> [(&'static str, Image<bool>); 4] {
         grazing,
     } = regions;
     let all = Image::from_fn(interior.size(), |pixel| {
-        [interior, silhouette, grazing].iter().any(|mask| *mask.get(pixel))
+        [interior, silhouette, grazing]
+            .iter()
+            .any(|mask| *mask.get(pixel))
     });
     [
         ("all", all),
@@ -111,7 +113,11 @@ pub(crate) fn measure_layers(
         let step = OUTLINE * scene.radius;
         let parts = Regions::new(&scene.camera, exact, 1, step, GRAZING);
         for (side, sheet, hit) in [
-            ("front_depth_rmse", &got.front, (|s: &Span| s.front) as fn(&Span) -> Hit),
+            (
+                "front_depth_rmse",
+                &got.front,
+                (|s: &Span| s.front) as fn(&Span) -> Hit,
+            ),
             ("back_depth_rmse", &got.back, |s| s.back),
         ] {
             let measured = view_depths(scene, sheet);
@@ -155,7 +161,9 @@ pub(crate) fn measure(
     let nearest = Image::from_fn(camera.size, |pixel: UVec2| {
         let depth = camera.view_from_device((*front.depth.get(pixel))?);
         let point = camera.unproject(pixel.as_dvec2() + 0.5, depth);
-        truth.judges(pixel).then(|| truth.nearest(camera, pixel, point))?
+        truth
+            .judges(pixel)
+            .then(|| truth.nearest(camera, pixel, point))?
     });
     let depth = nearest.map(|nearest| nearest.map(|nearest| -nearest.distance));
     let level = nearest.map(|nearest| nearest.map(|_| 0.0));
@@ -164,7 +172,11 @@ pub(crate) fn measure(
     let normals = front.normals.unwrap_or_else(no_normals);
     for (region, mask) in named(regions) {
         let covered = mask.pixels().iter().zip(nearest.pixels());
-        if covered.filter(|(mask, there)| **mask && there.is_some()).count() < FEWEST {
+        if covered
+            .filter(|(mask, there)| **mask && there.is_some())
+            .count()
+            < FEWEST
+        {
             continue;
         }
         let error = depth_error(&depth, &level, Some(&mask), scene.radius).map_err(wrong)?;

@@ -117,8 +117,7 @@ pub(crate) fn sky(direction: DVec3) -> DVec3 {
     let ground = dvec3(0.34, 0.31, 0.27);
     let pale = (-4.0 * up * up).exp();
     let glow = direction.dot(dvec3(0.6, 0.64, 0.48).normalize()).max(0.0);
-    ground.lerp(zenith, above).lerp(horizon, 0.8 * pale)
-        + dvec3(0.5, 0.42, 0.25) * glow.powi(24)
+    ground.lerp(zenith, above).lerp(horizon, 0.8 * pale) + dvec3(0.5, 0.42, 0.25) * glow.powi(24)
 }
 
 /// From sRGB bytes.
@@ -137,7 +136,10 @@ fn linear(bytes: [u8; 3]) -> DVec3 {
 /// Two by two squares, to be repeated; as sharp as the tracer's.
 fn squares() -> Image {
     let texels = [LIGHT, DARK, DARK, LIGHT];
-    let data: Vec<u8> = texels.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let data: Vec<u8> = texels
+        .iter()
+        .flat_map(|&[r, g, b]| [r, g, b, 255])
+        .collect();
     let size = Extent3d {
         width: 2,
         height: 2,
@@ -172,7 +174,10 @@ fn quad(corner: Vec3, a: Vec3, b: Vec3, uv: impl Fn(Vec3) -> Vec2) -> Mesh {
         PrimitiveTopology::TriangleList,
         RenderAssetUsages::RENDER_WORLD,
     )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, corners.map(|c| c.to_array()).to_vec())
+    .with_inserted_attribute(
+        Mesh::ATTRIBUTE_POSITION,
+        corners.map(|c| c.to_array()).to_vec(),
+    )
     .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![normal.to_array(); 4])
     .with_inserted_attribute(
         Mesh::ATTRIBUTE_UV_0,

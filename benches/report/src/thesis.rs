@@ -12,7 +12,13 @@ pub(crate) struct Published {
 pub(crate) const PASSES: [(&str, &[&str]); 5] = [
     (
         "whole",
-        &["time_splat", "time_smooth", "time_normals", "time_refract", "time_composite"],
+        &[
+            "time_splat",
+            "time_smooth",
+            "time_normals",
+            "time_refract",
+            "time_composite",
+        ],
     ),
     ("depth maps", &["time_splat"]),
     ("smoothing", &["time_smooth"]),

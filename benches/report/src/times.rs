@@ -13,7 +13,11 @@ use crate::{
 
 /// The passes by the names of their GPU spans, and what the table calls their times.
 const PASSES: [(&str, &str, &str); 6] = [
-    ("fluid_scene_depth", "time_scene_depth", "time_scene_depth_p95"),
+    (
+        "fluid_scene_depth",
+        "time_scene_depth",
+        "time_scene_depth_p95",
+    ),
     ("fluid_splat", "time_splat", "time_splat_p95"),
     ("fluid_smooth", "time_smooth", "time_smooth_p95"),
     ("fluid_normals", "time_normals", "time_normals_p95"),
@@ -88,11 +92,17 @@ pub(crate) fn measure(
         }
         // The smoothing's own work: the pass that finds normals is spared where it yields them.
         let sum = |passes: &[usize]| {
-            let times = frames.iter().map(|frame| passes.iter().map(|&p| frame[p]).sum());
+            let times = frames
+                .iter()
+                .map(|frame| passes.iter().map(|&p| frame[p]).sum());
             median_and_p95(times.collect())
         };
         for (passes, quantity, quantity_p95) in [
-            (&[2, 3][..], "time_smooth_normals", "time_smooth_normals_p95"),
+            (
+                &[2, 3][..],
+                "time_smooth_normals",
+                "time_smooth_normals_p95",
+            ),
             (&[0, 1, 2, 3, 4, 5], "time_gpu", "time_gpu_p95"),
         ] {
             if let Some([median, high]) = sum(passes) {

@@ -117,8 +117,7 @@ impl<'a> Truth<'a> {
                 let ray = camera.pixel_ray(pixel);
                 let beyond = |crossing: &Crossing| (point - ray.at(crossing.t)).dot(ray.direction);
                 let entries = entries.get(pixel).iter();
-                let nearest =
-                    entries.min_by(|a, b| beyond(a).abs().total_cmp(&beyond(b).abs()))?;
+                let nearest = entries.min_by(|a, b| beyond(a).abs().total_cmp(&beyond(b).abs()))?;
                 Some(Nearest {
                     // Deeper along the ray is inside.
                     distance: -beyond(nearest),
