@@ -79,6 +79,7 @@ impl Plugin for FluidRenderPlugin {
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "functions.wgsl");
         load_shader_library!(app, "track.wgsl");
+        load_shader_library!(app, "slopes.wgsl");
         load_shader_library!(app, "optics.wgsl");
         load_shader_library!(app, "splat/ellipsoid.wgsl");
         load_shader_library!(app, "smooth/window.wgsl");

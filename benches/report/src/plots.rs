@@ -77,14 +77,19 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> std::ops::Range<f64> {
     low / 1.3..high * 1.5
 }
 
-/// A logarithmic axis with labels at 1, 2, 5, 10, 20, 50 …
+/// A logarithmic axis with labels at round numbers, the more of them the shorter it is.
 fn decades(
     range: std::ops::Range<f64>,
 ) -> impl Ranged<ValueType = f64, FormatOption = DefaultFormatting> {
+    let digits: &[f64] = if range.end < 8.0 * range.start {
+        &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
+    } else {
+        &[1.0, 2.0, 5.0]
+    };
     let first = range.start.log10().floor() as i32;
     let last = range.end.log10().ceil() as i32;
     let labels = (first..=last)
-        .flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10_f64.powi(power)))
+        .flat_map(|power| digits.iter().map(move |digit| digit * 10_f64.powi(power)))
         .filter(|label| range.contains(label))
         .collect::<Vec<_>>();
     range.log_scale().with_key_points(labels)
@@ -138,14 +143,16 @@ fn draw_front<DB: DrawingBackend>(
     }
     let anchor = Pos::new(HPos::Left, VPos::Bottom);
     let style = TextStyle::from(("sans-serif", 13).into_font()).pos(anchor);
+    // By turns above and below, so that near ones can be told apart.
+    let sides = [(7, -5), (7, 16)].into_iter().cycle();
     chart
-        .draw_series(front.map(|p| {
+        .draw_series(front.zip(sides).map(|(p, side)| {
             let label = if p.parameters.is_empty() {
                 p.method.clone()
             } else {
                 p.parameters.clone()
             };
-            EmptyElement::at((p.time, p.error)) + Text::new(label, (7, -5), style.clone())
+            EmptyElement::at((p.time, p.error)) + Text::new(label, side, style.clone())
         }))
         .map_err(text)?;
     chart

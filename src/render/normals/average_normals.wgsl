@@ -1,7 +1,8 @@
 // The mean of the splats' normals over a window: Takahashi & Doi. Depth stays as splatted.
 
 #import bevy_fluid::render::functions::{decode_normal, encode_normal}
-#import bevy_fluid::render::smooth::window::{edge_weight, layers, valid_layers, window_at}
+#import bevy_fluid::render::slopes::layers_at
+#import bevy_fluid::render::smooth::window::{edge_weight, valid_layers, window_at}
 
 @group(2) @binding(0) var normals: texture_2d<f32>;
 
@@ -19,7 +20,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
                 continue;
             }
             // Where there is no surface the normal is zero and stays so.
-            let there = valid_layers(textureLoad(layers, pixel, 0).xy);
+            let there = valid_layers(layers_at(pixel).xy);
             let encoded = textureLoad(normals, pixel, 0);
             front += select(0.0, weight, there.x) * decode_normal(encoded.xy);
             back += select(0.0, weight, there.y) * decode_normal(encoded.zw);

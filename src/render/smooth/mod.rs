@@ -364,6 +364,7 @@ mod tests {
         for (form, count) in forms {
             let steps = SmoothSteps::new(&Smoothing::PlaneFit(PlaneFit {
                 form,
+                iterations: 3,
                 ..PlaneFit::DEFAULT
             }));
             assert_eq!(steps.steps.len(), count);

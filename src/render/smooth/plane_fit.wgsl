@@ -2,6 +2,7 @@
 // at once (METHOD 4.2).
 
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
+#import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{Tap, Window, accept, edge_weight, tap_at, window_at}
 
 struct Output {
@@ -124,7 +125,12 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let slope = select(vec2(0.0), cxd / select(vec2(1.0), cxx, sloped), sloped);
     let good = sloped & (count >= vec2(3.0));
     let layers = accept(window, window.center.xy + md - slope * mx, good);
-    let per_pixel = slope / f32(window.spacing);
+    var per_pixel = slope / f32(window.spacing);
+    if any(window.valid & !sloped) {
+        // So steep that all taps are out of range: the next pixel is what is left.
+        let beside = one_sided_slope(window.pixel, window.center.xy, select(vec2(1, 0), vec2(0, 1), #{LINE} == 1));
+        per_pixel = select(beside, per_pixel, sloped);
+    }
 #ifdef NORMALS
     out.layers = vec4(layers, 0.0, 0.0);
     out.normals = encode_normals(window, layers, across / total, per_pixel);

@@ -1,14 +1,13 @@
 // The window of a smoothing pass: taps spread over the projected particle radius.
 #define_import_path bevy_fluid::render::smooth::window
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
     DepthMap, depth_map, depth_slope, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
     view_from_device,
 }
-#import bevy_fluid::render::types::{INSIDE_FRONT, NO_BACK, NO_FRONT}
-
-@group(1) @binding(0) var layers: texture_2d<f32>;
+#import bevy_fluid::render::slopes::layers_at
+#import bevy_fluid::render::types::INSIDE_FRONT
 
 // Pixels between taps at the most: beyond it the window stops growing.
 const MAX_SPACING: i32 = 16;
@@ -48,7 +47,7 @@ fn window_at(position: vec2<f32>) -> Window {
     out.pixel = vec2<i32>(position);
     out.ndc = ndc_from_pixel(position);
     out.map = depth_map(out.ndc);
-    out.center = textureLoad(layers, out.pixel, 0);
+    out.center = layers_at(out.pixel);
     out.valid = valid_layers(out.center.xy);
     out.depth = view_depths(out.map, out.center.xy);
     out.steepness = depth_slope(out.map, abs(out.center.xy)) / body.range;
@@ -75,13 +74,7 @@ fn edge_weight(window: Window, tap: i32) -> f32 {
 
 // A tap's values, nothing outside of the viewport.
 fn raw_tap_at(window: Window, offset: vec2<i32>) -> vec4<f32> {
-    let pixel = window.pixel + offset * window.spacing;
-    let low = vec2<i32>(view.main_pass_viewport.xy);
-    let high = low + vec2<i32>(view.main_pass_viewport.zw);
-    if any(pixel < low) || any(pixel >= high) {
-        return vec4(NO_FRONT, NO_BACK, 0.0, 0.0);
-    }
-    return textureLoad(layers, pixel, 0);
+    return layers_at(window.pixel + offset * window.spacing);
 }
 
 fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
