@@ -36,6 +36,11 @@ impl ScreenSpaceFluid {
 
     /// As near to the truth as the method gets.
     pub const ACCURATE: Self = Self {
+        smoothing: Smoothing::PlaneFit(PlaneFit {
+            iterations: 2,
+            window: Window::Radii(1.0),
+            ..PlaneFit::DEFAULT
+        }),
         search: Search::Bracketed { coarse_samples: 8 },
         ..Self::DEFAULT
     };

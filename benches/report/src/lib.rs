@@ -129,6 +129,7 @@ fn errors(
         return Ok(());
     }
     let picture = TruePicture::of(scene, &truth, &regions);
+    let model = TruePicture::of_model(scene, &picture);
     for method in frames {
         rig.show(method)?;
         let got = rig.picture()?;
@@ -137,7 +138,9 @@ fn errors(
             method: method.name,
             parameters: &method.parameters,
         };
-        pictures::measure(table, subject, &picture, &got)?;
+        for truth in [Some(&picture), model.as_ref()].into_iter().flatten() {
+            pictures::measure(table, subject, truth, &got)?;
+        }
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
         progress.inc(1);
     }

@@ -27,7 +27,33 @@ pub(crate) struct TruePicture {
     whole: bool,
     /// Where it is judged, by name; `deep` is where light meets more than two interfaces.
     regions: Vec<(&'static str, Image<bool>)>,
+    names: Names,
 }
+
+/// What the table calls errors from a picture.
+#[derive(Clone, Copy)]
+struct Names {
+    psnr: &'static str,
+    rmse: &'static str,
+    flip: &'static str,
+    ssim: &'static str,
+}
+
+/// From the truth.
+const TRUTH: Names = Names {
+    psnr: "psnr",
+    rmse: "picture_rmse",
+    flip: "flip",
+    ssim: "ssim",
+};
+
+/// From what the renderer would compute were its layers and searches perfect.
+const MODEL: Names = Names {
+    psnr: "psnr_model",
+    rmse: "picture_rmse_model",
+    flip: "flip_model",
+    ssim: "ssim_model",
+};
 
 impl TruePicture {
     /// Every reflection and refraction at the true surface, exact for the middle of each pixel, as
@@ -58,7 +84,22 @@ impl TruePicture {
             image,
             whole,
             regions,
+            names: TRUTH,
         }
+    }
+
+    /// What is left of the truth in the renderer's model: four interfaces, and reflections of the
+    /// sky alone. Only of scenes whose form is known, for the implicit surface is slow.
+    pub(crate) fn of_model(scene: &Scene, of: &Self) -> Option<Self> {
+        let exact = scene.exact.as_deref()?;
+        let objects = scene.around.objects();
+        let tracer = Tracer::renderer(world(exact, &objects), water());
+        Some(Self {
+            image: tracer.render(&scene.camera, 1).map(|c| encode_srgb(*c)),
+            whole: true,
+            regions: of.regions.clone(),
+            names: MODEL,
+        })
     }
 }
 
@@ -94,14 +135,14 @@ pub(crate) fn measure(
         let peak = psnr(&truth.image, got, Some(mask))
             .map_err(wrong)?
             .min(99.0);
-        table.add(subject, "psnr", region, peak, "dB");
+        table.add(subject, truth.names.psnr, region, peak, "dB");
         let rmse = 10_f64.powf(-peak / 20.0);
-        table.add(subject, "picture_rmse", region, rmse, "1");
+        table.add(subject, truth.names.rmse, region, rmse, "1");
         if let Some((flip, ssim)) = &maps {
             let flip = mean("FLIP", flip, Some(mask)).map_err(wrong)?;
-            table.add(subject, "flip", region, flip, "1");
+            table.add(subject, truth.names.flip, region, flip, "1");
             let ssim = mean("SSIM", ssim, Some(mask)).map_err(wrong)?;
-            table.add(subject, "ssim", region, ssim, "1");
+            table.add(subject, truth.names.ssim, region, ssim, "1");
         }
     }
     Ok(())
@@ -146,6 +187,7 @@ pub(crate) fn ablate(
         image: exact_search,
         whole: true,
         regions: truth.regions.clone(),
+        names: TRUTH,
     };
     measure(
         table,

@@ -27,16 +27,16 @@ const PASSES: [(&str, &str, &str); 6] = [
 
 /// Frames of a method that are drawn before its turn counts: its textures change hands, and times
 /// are read a frame or two after they were taken.
-const WARM_UP: u32 = 3;
+const WARM_UP: u32 = 2;
 /// Frames that count in each turn.
-const TURN: u32 = 4;
+const TURN: u32 = 5;
 
 /// How many turns each method gets: a software driver is slow, and steadier.
 pub(crate) fn turns(adapter: &str, quick: bool) -> u32 {
     match (quick, adapter.contains("llvmpipe")) {
         (true, _) => 1,
-        (false, true) => 3,
-        (false, false) => 8,
+        (false, true) => 2,
+        (false, false) => 6,
     }
 }
 

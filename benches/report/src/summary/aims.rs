@@ -169,7 +169,7 @@ fn searches(table: &Table, aims: &mut Vec<Aim>) {
 
 fn refractions(table: &Table, aims: &mut Vec<Aim>) {
     for region in ["all", "deep"] {
-        for quantity in ["flip", "picture_rmse"] {
+        for quantity in ["flip", "picture_rmse", "flip_model", "picture_rmse_model"] {
             let value = |method| table.value("pool-and-droplets", method, quantity, region);
             let got = value((methods::DEFAULT, "")).zip(value(("refractions", "2")));
             let what = format!("pool and droplets: four interfaces over two: {quantity}, {region}");

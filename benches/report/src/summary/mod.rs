@@ -174,6 +174,10 @@ fn refractions(table: &Table) -> String {
             ("RMSE", "picture_rmse", "all"),
             ("FLIP beyond two interfaces", "flip", "deep"),
             ("RMSE beyond two interfaces", "picture_rmse", "deep"),
+            ("FLIP, model", "flip_model", "all"),
+            ("RMSE, model", "picture_rmse_model", "all"),
+            ("FLIP beyond two, model", "flip_model", "deep"),
+            ("RMSE beyond two, model", "picture_rmse_model", "deep"),
         ] {
             let counts = ["0", "1", "2"];
             let value = |method| table.value(scene, method, quantity, region);
