@@ -55,9 +55,7 @@ impl Rig {
                 Msaa::Off,
                 Tonemapping::None,
                 projection(camera.lens),
-                Transform::from_matrix(Mat4::from(bevy::math::Affine3A::from(
-                    camera.world_from_view.as_affine3a(),
-                ))),
+                Transform::from_matrix(Mat4::from(camera.world_from_view.as_affine3a())),
                 sky,
             ));
             let eye = eye.id();
