@@ -4,6 +4,7 @@ use bevy::{
     camera::visibility::RenderLayers,
     ecs::query::QueryItem,
     light::Skybox,
+    math::Mat3A,
     prelude::*,
     render::{
         Extract, MainWorld,
@@ -191,7 +192,7 @@ pub(crate) fn extract_fluids(
         fluid.transform = *transform;
         fluid.material = material.copied().unwrap_or_default();
         fluid.visible = visibility.get();
-        fluid.radius = particles.radius * mean_scale(transform);
+        fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);
         fluid
             .layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
@@ -217,8 +218,7 @@ pub(crate) fn extract_fluids(
 }
 
 /// The scale of a sphere of the same volume.
-fn mean_scale(transform: &GlobalTransform) -> f32 {
-    let matrix = transform.affine().matrix3;
+pub(crate) fn mean_scale(matrix: &Mat3A) -> f32 {
     let volume = matrix.determinant().abs();
     if volume.is_finite() && volume > 0.0 {
         volume.cbrt()
