@@ -1,5 +1,6 @@
 //! Depth layers held against ellipsoids in f64.
 
+use bevy::math::UVec2;
 use fluid_stage::TextureData;
 
 use super::{Ellipsoid, Ray, View, pixels};
@@ -23,6 +24,18 @@ pub(crate) fn union(bodies: &[Ellipsoid], ray: &Ray, scale: f64) -> Option<[f64;
         .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
+/// Bodies that miss a pixel's centre are met in their own middle by the pixel that holds it.
+fn held(view: &View, bodies: &[Ellipsoid], pixel: UVec2, ray: &Ray) -> Option<[f64; 2]> {
+    let held = bodies.iter().filter_map(|body| {
+        let center = view.project(body.center())?;
+        let holds = (center - View::center(pixel)).abs().max_element() <= 0.5 + PLAY;
+        let own = view.ray(center);
+        let depths = body.crossings(&own).filter(|_| holds)?.map(|t| own.at(t).z);
+        Some(depths.map(|z| (z - ray.origin.z) / ray.direction.z))
+    });
+    held.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
 /// Compares all pixels: depths may be off by `tolerance` (m). The larger the bodies, the nearer
 /// their fronts and the farther their backs, so the layers lie between those of slightly larger
 /// and of slightly smaller ones.
@@ -43,6 +56,8 @@ pub(crate) fn compare_layers(
         let [front, back] = got.f32x2(pixel.x, pixel.y);
         let ray = view.ray(View::center(pixel));
         let [larger, smaller] = [1.0 + PLAY, 1.0 - PLAY].map(|scale| union(bodies, &ray, scale));
+        let larger = larger.into_iter().chain(held(view, bodies, pixel, &ray));
+        let larger = larger.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         if front == NOTHING[0] {
             assert_eq!([front, back], NOTHING, "{pixel}");
             assert!(smaller.is_none(), "{pixel} is covered");

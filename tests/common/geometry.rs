@@ -105,6 +105,20 @@ impl View {
         }
     }
 
+    /// Where a point of view space is on screen in pixels, if it is before the eye.
+    pub(crate) fn project(&self, at: DVec3) -> Option<DVec2> {
+        let ndc = match self.lens {
+            Lens::Perspective { .. } => at.truncate() / -at.z / self.half_extent(),
+            Lens::Orthographic { .. } => at.truncate() / self.half_extent(),
+            Lens::Matrix(clip_from_view) => {
+                let clip = clip_from_view.as_dmat4() * at.extend(1.0);
+                clip.truncate().truncate() / clip.w
+            }
+        };
+        let pixel = (ndc * DVec2::new(0.5, -0.5) + 0.5) * self.size.as_dvec2();
+        (at.z < 0.0).then_some(pixel)
+    }
+
     fn view_from_world(&self) -> DAffine3 {
         affine(&self.pose).inverse()
     }
@@ -158,6 +172,10 @@ impl Ellipsoid {
         let place = Transform::IDENTITY;
         let sphere = |&position| Self::new(view, &place, position, radius);
         positions.iter().map(sphere).collect()
+    }
+
+    pub(crate) fn center(&self) -> DVec3 {
+        self.view_from_unit.translation
     }
 
     /// Distances along the ray at which it enters and leaves; negative before its origin.

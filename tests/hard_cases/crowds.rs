@@ -52,8 +52,9 @@ fn h35_a_hundred_thousand_particles_in_one_cell() {
     assert!(report(&mut app).times().total > Duration::ZERO);
     let layers = read(&app, Layers::bulk);
     let covered = layers.texels().filter(|&[front, _]: &[f32; 2]| front > 0.0);
-    // About as large as one particle: 2 r at 5 m.
-    assert!((4..40).contains(&covered.count()));
+    // 3 r about the middle at most: the crowd's half, the splat's offset and its own radius.
+    let covered = covered.count();
+    assert!((4..90).contains(&covered), "{covered} pixels");
 }
 
 #[test]
@@ -164,10 +165,10 @@ fn h48_particles_appear_and_vanish_every_frame() {
 
 #[test]
 fn h49_more_particles_than_the_devices_buffers_hold() {
-    // 64 KiB hold 2048 splats.
+    // 256 KiB hold 8192 splats.
     let settings = WgpuSettings {
         constrained_limits: Some(WgpuLimits {
-            max_storage_buffer_binding_size: 1 << 16,
+            max_storage_buffer_binding_size: 1 << 18,
             ..default()
         }),
         ..default()
@@ -180,14 +181,14 @@ fn h49_more_particles_than_the_devices_buffers_hold() {
     })
     .unwrap();
     settle(&mut app).unwrap();
-    let positions: Vec<_> = lattice(14, 0.1, 0.3)
+    let positions: Vec<_> = lattice(21, 0.1, 0.3)
         .iter()
-        .map(|p| p + vec3(-0.7, -0.7, -6.0))
+        .map(|p| p + vec3(-1.0, -1.0, -7.0))
         .collect();
     pour(&mut app, fluid(&positions, 0.05, BULK));
     assert_sound(&app);
     let splats = shaped(&positions, 0.05, &BULK);
-    let drawn = ellipsoids(&view, &Transform::IDENTITY, &splats.splats[..2048]);
+    let drawn = ellipsoids(&view, &Transform::IDENTITY, &splats.splats[..8192]);
     assert_layers(&view, &read(&app, Layers::bulk), &drawn, 1e-4);
     for _ in 0..3 {
         let liquid = only::<FluidParticles>(&mut app);
@@ -199,7 +200,7 @@ fn h49_more_particles_than_the_devices_buffers_hold() {
         step(&mut app, 1);
     }
     assert_sound(&app);
-    assert_eq!(log::said("the first 2048 are drawn"), 1);
+    assert_eq!(log::said("the first 8192 are drawn"), 1);
     // Fewer again: all of them.
     let few = (&positions[..500], 0.05, BULK);
     assert!(assert_drawn(&view, &mut app, few, 2e-3) > 100);

@@ -1,7 +1,7 @@
 //! h19 to h26: what smoothing must leave alone.
 
 use bevy::prelude::*;
-use bevy_fluid::{PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing, render::Layers};
+use bevy_fluid::{Bilateral, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing, render::Layers};
 use fluid_stage::TextureData;
 
 use super::*;
@@ -31,7 +31,7 @@ fn all() -> Vec<ScreenSpaceFluid> {
         fit(PlaneFitForm::TotalLeastSquares),
         fit(PlaneFitForm::DeviceDepth),
         fit(PlaneFitForm::Separable),
-        Smoothing::Bilateral(default()),
+        Smoothing::Bilateral(Bilateral::THESIS),
         Smoothing::NormalAverage(default()),
         Smoothing::NarrowRange(default()),
         Smoothing::CurvatureFlow(default()),

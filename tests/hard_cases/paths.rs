@@ -138,7 +138,7 @@ fn h28_spray_is_met_in_order_before_in_and_behind_the_bulk() {
         (8.0, false, 4, 8.4),
         // In the front and in the back surface.
         (4.0, true, 2, 6.0),
-        (6.0, false, 2, 6.0),
+        (6.0, false, 2, 6.4),
     ] {
         pour(&mut app, fluid(&[CENTER], 1.0, BULK));
         app.world_mut().spawn(fluid(&[droplet(depth)], 0.4, SPRAY));
@@ -198,10 +198,8 @@ fn h29_at_the_critical_angle_no_root_is_taken_of_a_negative() {
         );
     }
     // Grazing from outside: the same angle the other way round.
-    let app = show(&PARALLEL, TRACED, |world| {
-        world.spawn((fluid(&[CENTER], 1.0, SPRAY), clear(1.333)));
-    });
-    assert_sound(&app);
+    pour(&mut app, fluid(&[CENTER], 1.0, SPRAY));
+    assert_white(&PARALLEL, &app);
 }
 
 #[test]
@@ -455,12 +453,10 @@ fn h34_paths_of_no_length_and_of_endless_length_are_finite() {
 #[test]
 fn h43_a_ray_that_leaves_the_screen_sees_the_environment() {
     let mut app = show(&PARALLEL, TRACED, |world| {
-        // All that is behind the liquid on screen is a green wall.
-        spawn_box(
-            world,
-            vec3(9.0, 9.0, 0.1),
-            Transform::from_xyz(0.0, 0.0, -9.0),
-        );
+        // Behind the liquid is a green wall, but for what is next to the screen's border: there
+        // it would be taken to go on.
+        let place = Transform::from_xyz(0.0, 0.0, -9.0);
+        spawn_box(world, vec3(2.0, 9.0, 0.1), place);
     });
     let mut images = app.world_mut().resource_mut::<Assets<Image>>();
     let mut map = EnvironmentMapLight::solid_color(&mut images, Color::linear_rgb(1.0, 0.0, 0.0));
@@ -479,7 +475,7 @@ fn h43_a_ray_that_leaves_the_screen_sees_the_environment() {
                 left += 1;
                 assert!(r > 200 && g < 40, "{pixel}: {r} {g}, {exit:?}");
             }
-            SearchStatus::Hit if exit.position.x.abs() < 0.95 * 1.1 => {
+            SearchStatus::Hit if exit.position.x.abs() < 0.95 => {
                 stayed += 1;
                 assert!(r < 100 && g > 100, "{pixel}: {r} {g}, {exit:?}");
             }
