@@ -92,11 +92,9 @@ fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> 
 // for what has no direction: where there is no layer there is no plane.
 fn unit_or_z(v: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(v.x), abs(v.y)), abs(v.z));
-    // False for NaN too.
-    if !(size > 0.0 && size < 1e38) {
-        return vec3(0.0, 0.0, 1.0);
-    }
-    return normalize(v / size);
+    // NaN is below nothing.
+    let usable = all(abs(v) < vec3(1e38)) && size > 0.0;
+    return select(vec3(0.0, 0.0, 1.0), normalize(v / size), usable);
 }
 
 // Nearest of a pixel's samples.
