@@ -19,6 +19,7 @@ use bevy::{
 use super::{
     bounds::Bounds,
     gpu_types::{GpuDirectionalLight, MAX_LIGHTS},
+    support::FluidSupport,
 };
 use crate::{
     material::FluidMaterial,
@@ -237,9 +238,13 @@ pub(crate) fn forget_buffers(mut fluids: Query<&mut GpuSplats>) {
 
 pub(crate) fn upload_splats(
     mut fluids: Query<(&mut ExtractedFluid, &mut GpuSplats)>,
+    support: Res<FluidSupport>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
 ) {
+    if !support.drawing {
+        return;
+    }
     for (mut fluid, mut gpu) in &mut fluids {
         if !fluid.fresh && (gpu.buffer.is_some() || fluid.splats.is_empty()) {
             continue;
