@@ -30,8 +30,11 @@ fn held(view: &View, bodies: &[Ellipsoid], pixel: UVec2, ray: &Ray) -> Option<[f
         let center = view.project(body.center())?;
         let holds = (center - View::center(pixel)).abs().max_element() <= 0.5 + PLAY;
         let own = view.ray(center);
-        let depths = body.crossings(&own).filter(|_| holds)?.map(|t| own.at(t).z);
-        Some(depths.map(|z| (z - ray.origin.z) / ray.direction.z))
+        let crossings = body.crossings(&own).filter(|_| holds)?;
+        Some(crossings.map(|t| {
+            let at = view.unproject(View::center(pixel), view.device(own.at(t)));
+            (at - ray.origin).dot(ray.direction)
+        }))
     });
     held.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }

@@ -105,6 +105,19 @@ impl View {
         }
     }
 
+    /// Device depth of a point in view space.
+    pub(crate) fn device(&self, at: DVec3) -> f32 {
+        let device = match self.lens {
+            Lens::Perspective { near, .. } => f64::from(near) / -at.z,
+            Lens::Orthographic { near, far, .. } => (f64::from(far) + at.z) / f64::from(far - near),
+            Lens::Matrix(clip_from_view) => {
+                let clip = clip_from_view.as_dmat4() * at.extend(1.0);
+                clip.z / clip.w
+            }
+        };
+        device as f32
+    }
+
     /// Where a point of view space is on screen in pixels, if it is before the eye.
     pub(crate) fn project(&self, at: DVec3) -> Option<DVec2> {
         let ndc = match self.lens {
@@ -116,7 +129,9 @@ impl View {
             }
         };
         let pixel = (ndc * DVec2::new(0.5, -0.5) + 0.5) * self.size.as_dvec2();
-        (at.z < 0.0).then_some(pixel)
+        // A parallel view has no eye to be behind.
+        let before = at.z < 0.0 || matches!(self.lens, Lens::Orthographic { .. });
+        before.then_some(pixel)
     }
 
     fn view_from_world(&self) -> DAffine3 {
