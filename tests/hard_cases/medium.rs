@@ -1,5 +1,5 @@
 //! h50: absorption from none to all, over no way and a long one. The GPU's form is held against
-//! the same f64 in `render::tests::shaders`.
+//! the same f64 in `render::shader_tests`.
 
 use bevy::prelude::*;
 use bevy_fluid::{Medium, Refractions, ScreenSpaceFluid, prelude::*, render::Layers};

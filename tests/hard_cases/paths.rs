@@ -173,7 +173,7 @@ fn slab(app: &mut App, material: FluidMaterial, [front, back]: [(f32, f32); 2]) 
 
 #[test]
 fn h29_at_the_critical_angle_no_root_is_taken_of_a_negative() {
-    // The formula itself is tested in `render::tests::shaders`, to a millionth of a radian; here
+    // The formula itself is tested in `render::shader_tests`, to a millionth of a radian; here
     // the normals' 11 bits decide which side of it a ray is on.
     let critical = (1.0_f32 / 1.333).asin();
     let mut app = show(&PARALLEL, TRACED, |_| {});
@@ -440,7 +440,7 @@ fn h34_paths_of_no_length_and_of_endless_length_are_finite() {
             );
         }
     }
-    // The same in Rust; its WGSL twin is compared with it in `render::tests::shaders`.
+    // The same in Rust; its WGSL twin is compared with it in `render::shader_tests`.
     for distance in [0.0, f32::INFINITY, f32::MAX, -1.0] {
         let left = ink.medium.transmitted(distance);
         assert!(
