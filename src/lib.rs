@@ -33,6 +33,9 @@
 //!    itself sends, and the background where the ray has gone.
 //!
 //! Only what a scene has is done: see [`render::plan`].
+//!
+//! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
+//! with the fifty hard cases that are tested.
 
 mod material;
 mod medium;

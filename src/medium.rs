@@ -2,6 +2,10 @@
 
 use bevy::prelude::*;
 
+/// Extinction (1/m) beyond which nothing differs. GPUs take powers of 2, and f32's largest numbers
+/// times log₂ e are infinite, which over no distance is not a number.
+const DENSEST: f32 = 1e30;
+
 /// A homogeneous medium that absorbs light.
 ///
 /// Along a path of length `d` metres the fraction `exp(-B d)` of each channel is left, with
@@ -55,7 +59,7 @@ impl Medium {
         };
         self.absorption_color.to_vec3().map(|kept| {
             let kept = if kept.is_finite() { kept } else { 1.0 };
-            density * (1.0 - kept.clamp(0.0, 1.0))
+            (density * (1.0 - kept.clamp(0.0, 1.0))).min(DENSEST)
         })
     }
 

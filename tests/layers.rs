@@ -7,7 +7,6 @@ mod equal;
 use bevy::{prelude::*, render::render_resource::Texture};
 use bevy_fluid::{SurfaceKernel, render::Layers};
 use common::*;
-use fluid_stage::TextureData;
 
 const PERSPECTIVE: Lens = Lens::Perspective {
     fov: 0.7,
@@ -19,63 +18,6 @@ const PARALLEL: Lens = Lens::Orthographic {
     far: 12.0,
 };
 const LENSES: [Lens; 2] = [PERSPECTIVE, PARALLEL];
-
-/// Nothing there, as `types.wgsl` has it.
-const NOTHING: [f32; 2] = [0.0, -2.0];
-/// The front of a ray that starts in the liquid.
-const INSIDE: f32 = 1.0;
-
-/// How much larger or smaller than it is an ellipsoid may look: enough for f32 to round a ray to
-/// the other side of a silhouette, where depth jumps.
-const PLAY: f64 = 2e-4;
-
-/// Front and back of the union along one ray, as distances from the near plane.
-fn union(bodies: &[Ellipsoid], ray: &Ray, scale: f64) -> Option<[f64; 2]> {
-    let crossings = bodies
-        .iter()
-        .filter_map(|body| body.scaled_crossings(ray, scale));
-    crossings
-        .filter(|[_, back]| *back > 0.0)
-        .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-}
-
-/// Compares all pixels: depths may be off by `tolerance` (m). The larger the bodies, the nearer
-/// their fronts and the farther their backs, so the layers lie between those of slightly larger
-/// and of slightly smaller ones.
-fn assert_layers(view: &View, got: &TextureData, bodies: &[Ellipsoid], tolerance: f64) {
-    let mut covered = 0;
-    for pixel in pixels(view.size) {
-        let [front, back] = got.f32x2(pixel.x, pixel.y);
-        let ray = view.ray(View::center(pixel));
-        let [larger, smaller] = [1.0 + PLAY, 1.0 - PLAY].map(|scale| union(bodies, &ray, scale));
-        if front == NOTHING[0] {
-            assert_eq!([front, back], NOTHING, "{pixel}");
-            assert!(smaller.is_none(), "{pixel} is covered");
-            continue;
-        }
-        let larger = larger.unwrap_or_else(|| panic!("{pixel} is not covered: {front} {back}"));
-        let smaller = smaller.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
-        covered += 1;
-        // From depths to distances along the ray.
-        let along = |depth: f64| (depth + ray.origin.z) / -ray.direction.z;
-        let [near, far] = [along(view.depth(front)), along(view.depth(-back))];
-        if front == INSIDE {
-            assert!(larger[0] <= tolerance, "{pixel} starts outside");
-        } else {
-            let range = larger[0] - tolerance..=smaller[0] + tolerance;
-            assert!(
-                range.contains(&near),
-                "{pixel}: front {near} is not in {range:?}"
-            );
-        }
-        let range = smaller[1] - tolerance..=larger[1] + tolerance;
-        assert!(
-            range.contains(&far),
-            "{pixel}: back {far} is not in {range:?}"
-        );
-    }
-    assert!(covered > 20, "too little is seen to tell: {covered} pixels");
-}
 
 fn bulk_and_spray() -> [(SurfaceKernel, fn(&Layers) -> &Texture); 2] {
     [(BULK, Layers::bulk), (SPRAY, Layers::spray)]

@@ -44,14 +44,15 @@ pub(crate) struct Sources<'w> {
 }
 
 pub(crate) fn prepare_splat_bind_groups(mut fluids: Query<&mut GpuSplats>, sources: Sources) {
-    let layout = sources
-        .cache
-        .get_bind_group_layout(&sources.splat.fluid_layout);
     for mut gpu in &mut fluids {
         let (Some(buffer), Some(transform)) = (&gpu.buffer, sources.uniforms.fluids.binding())
         else {
             continue;
         };
+        // Asked for here: a device without storage buffers has no such layout, nor any splats.
+        let layout = sources
+            .cache
+            .get_bind_group_layout(&sources.splat.fluid_layout);
         let group = sources.device.create_bind_group(
             "fluid_splats",
             &layout,

@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use bevy::{
     camera::{ClearColorConfig, MainPassResolutionOverride},
+    math::{Affine3A, Vec3A},
     prelude::*,
     render::{
         camera::ExtractedCamera,
@@ -19,7 +20,7 @@ use bevy::{
 use super::{
     bounds::Bounds,
     composite::CompositeKey,
-    extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
+    extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings, mean_scale},
     gpu_types::{GpuBody, GpuFluid},
     layers::Layers,
     pipelines::{BodyPipelines, Pipelines},
@@ -180,11 +181,14 @@ pub(crate) fn prepare_bodies(
         if let Some(size) = resolution {
             (viewport.z, viewport.w) = (size.x, size.y);
         }
-        let view_from_world = view.world_from_view.affine().inverse();
-        let clip_from_world = view
-            .clip_from_world
-            .unwrap_or_else(|| view.clip_from_view * Mat4::from(view_from_world));
+        // All about the eye: far from the origin a product of large numbers would lose metres.
         let eye = view.world_from_view.translation();
+        let view_from_eye =
+            Affine3A::from_mat3(view.world_from_view.affine().matrix3.inverse().into());
+        let clip_from_eye = match view.clip_from_world {
+            Some(clip_from_world) => clip_from_world * Mat4::from_translation(eye),
+            None => view.clip_from_view * Mat4::from(view_from_eye),
+        };
 
         let mut bodies = Vec::new();
         let visible: Vec<_> = fluids
@@ -193,15 +197,17 @@ pub(crate) fn prepare_bodies(
             .collect();
         for (material, members) in by_material(&visible) {
             let bounds = members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
-                bounds.union(fluid.bounds.transformed(&fluid.transform.affine()))
+                let mut eye_from_local = fluid.transform.affine();
+                eye_from_local.translation -= Vec3A::from(eye);
+                bounds.union(fluid.bounds.transformed(&eye_from_local))
             });
-            let scissor = bounds.scissor(&clip_from_world, viewport);
+            let scissor = bounds.scissor(&clip_from_eye, viewport);
             let count = |of: fn(&ExtractedFluid) -> u32| {
                 members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
             };
             let planned = plan(&PlanInput {
                 in_view: scissor.is_some(),
-                near_plane_cuts: bounds.near_plane_cuts(&clip_from_world),
+                near_plane_cuts: bounds.near_plane_cuts(&clip_from_eye),
                 bulk: count(|fluid| fluid.bulk),
                 interior: count(|fluid| fluid.interior),
                 spray: count(|fluid| fluid.spray),
@@ -217,7 +223,10 @@ pub(crate) fn prepare_bodies(
                 .map
                 .as_ref()
                 .filter(|map| is_cubemap(&images, map.image.id()));
-            let mut body = GpuBody::new(&material, radius, settings, &plan.smoothing);
+            // A scaled camera has other metres than the world.
+            let view_scale = mean_scale(&view_from_eye.matrix3);
+            let mut body = GpuBody::new(&material, radius * view_scale, settings, &plan.smoothing);
+            body.extinction /= view_scale;
             body.lights = lights.lights;
             body.light_count = lights.count;
             if let Some(map) = map {
@@ -247,9 +256,9 @@ pub(crate) fn prepare_bodies(
                 &support,
                 &placeholders.layers,
             );
-            let depths = view_depths(&bounds, &Mat4::from(view_from_world));
+            let depths = view_depths(&bounds, &view_from_eye);
             bodies.push((
-                bounds.center().distance_squared(eye),
+                bounds.center().length_squared(),
                 Body {
                     plan,
                     layers,
@@ -323,8 +332,8 @@ fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
 }
 
 /// Nearest and farthest depth of the box, for debug views.
-fn view_depths(bounds: &Bounds, view_from_world: &Mat4) -> Vec4 {
-    let in_view = bounds.transformed(&bevy::math::Affine3A::from_mat4(*view_from_world));
+fn view_depths(bounds: &Bounds, view_from_eye: &Affine3A) -> Vec4 {
+    let in_view = bounds.transformed(view_from_eye);
     let near = (-in_view.max.z).max(0.0);
     vec4(near, (-in_view.min.z).max(near + 1e-6), 0.0, 0.0)
 }

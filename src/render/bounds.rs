@@ -27,10 +27,10 @@ impl Bounds {
     }
 
     /// Whether a part of the box is nearer than the near plane, or behind the eye.
-    pub(crate) fn near_plane_cuts(&self, clip_from_world: &Mat4) -> bool {
+    pub(crate) fn near_plane_cuts(&self, clip_from_eye: &Mat4) -> bool {
         !self.is_empty()
             && self.corners().into_iter().any(|p| {
-                let clip = *clip_from_world * p.extend(1.0);
+                let clip = *clip_from_eye * p.extend(1.0);
                 clip.w <= 1e-6 || clip.z > clip.w
             })
     }
@@ -65,11 +65,18 @@ impl Bounds {
 
     /// The pixels of `viewport` (x, y, width, height) the box may cover; `None` if it cannot be
     /// seen.
-    pub(crate) fn scissor(&self, clip_from_world: &Mat4, viewport: UVec4) -> Option<URect> {
+    pub(crate) fn scissor(&self, clip_from_eye: &Mat4, viewport: UVec4) -> Option<URect> {
         if self.is_empty() || viewport.z == 0 || viewport.w == 0 {
             return None;
         }
-        let clip = self.corners().map(|p| *clip_from_world * p.extend(1.0));
+        let clip = self.corners().map(|p| *clip_from_eye * p.extend(1.0));
+        // So large that products overflow: it may be anywhere.
+        if !clip.iter().all(|c| c.is_finite()) {
+            return Some(URect::from_corners(
+                viewport.xy(),
+                viewport.xy() + viewport.zw(),
+            ));
+        }
         let all = |outside: fn(&Vec4) -> bool| clip.iter().all(outside);
         if all(|c| c.x < -c.w)
             || all(|c| c.x > c.w)
@@ -84,7 +91,7 @@ impl Bounds {
         let size = viewport.zw();
         let whole = URect::from_corners(origin, origin + size);
         // Its projection has no bound.
-        if self.near_plane_cuts(clip_from_world) {
+        if self.near_plane_cuts(clip_from_eye) {
             return Some(whole);
         }
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);

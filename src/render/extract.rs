@@ -4,6 +4,7 @@ use bevy::{
     camera::visibility::RenderLayers,
     ecs::query::QueryItem,
     light::Skybox,
+    math::Mat3A,
     prelude::*,
     render::{
         Extract, MainWorld,
@@ -18,6 +19,7 @@ use bevy::{
 use super::{
     bounds::Bounds,
     gpu_types::{GpuDirectionalLight, MAX_LIGHTS},
+    support::FluidSupport,
 };
 use crate::{
     material::FluidMaterial,
@@ -191,7 +193,7 @@ pub(crate) fn extract_fluids(
         fluid.transform = *transform;
         fluid.material = material.copied().unwrap_or_default();
         fluid.visible = visibility.get();
-        fluid.radius = particles.radius * mean_scale(transform);
+        fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);
         fluid
             .layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
@@ -217,8 +219,7 @@ pub(crate) fn extract_fluids(
 }
 
 /// The scale of a sphere of the same volume.
-fn mean_scale(transform: &GlobalTransform) -> f32 {
-    let matrix = transform.affine().matrix3;
+pub(crate) fn mean_scale(matrix: &Mat3A) -> f32 {
     let volume = matrix.determinant().abs();
     if volume.is_finite() && volume > 0.0 {
         volume.cbrt()
@@ -237,9 +238,13 @@ pub(crate) fn forget_buffers(mut fluids: Query<&mut GpuSplats>) {
 
 pub(crate) fn upload_splats(
     mut fluids: Query<(&mut ExtractedFluid, &mut GpuSplats)>,
+    support: Res<FluidSupport>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
 ) {
+    if !support.drawing {
+        return;
+    }
     for (mut fluid, mut gpu) in &mut fluids {
         if !fluid.fresh && (gpu.buffer.is_some() || fluid.splats.is_empty()) {
             continue;

@@ -85,7 +85,16 @@ fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> 
     let per_ndc = slope * view.main_pass_viewport.zw * vec2(0.5, -0.5);
     let clip_plane = vec4(-per_ndc, 1.0, dot(per_ndc, ndc) - depth);
     let view_plane = clip_plane * view.clip_from_view;
-    return normalize(view_plane.xyz);
+    return unit_or_z(view_plane.xyz);
+}
+
+// The unit vector along `v`, of any length whose square f32 may not hold; +z, towards the viewer,
+// for what has no direction: where there is no layer there is no plane.
+fn unit_or_z(v: vec3<f32>) -> vec3<f32> {
+    let size = max(max(abs(v.x), abs(v.y)), abs(v.z));
+    // NaN is below nothing.
+    let usable = all(abs(v) < vec3(1e38)) && size > 0.0;
+    return select(vec3(0.0, 0.0, 1.0), normalize(v / size), usable);
 }
 
 // Nearest of a pixel's samples.

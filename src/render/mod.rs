@@ -15,6 +15,8 @@ mod plan;
 mod refract;
 mod scene_depth;
 mod scene_textures;
+#[cfg(test)]
+mod shader_tests;
 mod smooth;
 mod splat;
 mod support;

@@ -76,7 +76,7 @@ fn highlights(direction: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
     let nov = max(dot(n, v), 1e-4);
     for (var i = 0u; i < body.light_count; i += 1u) {
         let light = body.lights[i];
-        let l = (view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz;
+        let l = normalize((view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz);
         let nol = dot(n, l);
         if nol <= 0.0 {
             continue;

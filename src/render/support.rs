@@ -5,6 +5,7 @@ use bevy::{
     render::{
         render_resource::{TextureFormat, TextureFormatFeatureFlags, TextureUsages, WgpuFeatures},
         renderer::{RenderAdapter, RenderAdapterInfo, RenderDevice},
+        settings::WgpuLimits,
     },
 };
 
@@ -43,23 +44,18 @@ pub(crate) fn init_support(
     adapter: Res<RenderAdapter>,
     info: Res<RenderAdapterInfo>,
 ) {
-    let limits = device.limits();
-    let drawing = limits.max_storage_buffers_per_shader_stage > 0
-        && adapter
-            .get_texture_format_features(LAYER_FORMAT)
-            .allowed_usages
-            .contains(TextureUsages::RENDER_ATTACHMENT);
+    let layers = adapter.get_texture_format_features(LAYER_FORMAT);
+    let drawing = can_draw(&device.limits(), layers.allowed_usages);
     if !drawing {
         warn!(
             "fluids are not drawn: {} has no storage buffers in vertex shaders or cannot render to {LAYER_FORMAT:?}",
             info.name
         );
     }
-    let can_blend = can_blend(&device, &adapter, &info);
-    let max_blend = match wanted.0 {
-        LayerBlending::DepthDraws => false,
-        LayerBlending::Auto | LayerBlending::MaxBlend => can_blend,
-    };
+    // OpenGL claims it without looking.
+    let trusted = format!("{:?}", info.backend) != "Gl";
+    let can_blend = trusted && can_blend(device.features(), layers.flags);
+    let max_blend = can_blend && wanted.0 != LayerBlending::DepthDraws;
     if wanted.0 == LayerBlending::MaxBlend && !can_blend {
         warn!(
             "{} cannot blend {LAYER_FORMAT:?}: fluid layers are drawn twice instead",
@@ -69,16 +65,79 @@ pub(crate) fn init_support(
     commands.insert_resource(FluidSupport { drawing, max_blend });
 }
 
-fn can_blend(device: &RenderDevice, adapter: &RenderAdapter, info: &RenderAdapterInfo) -> bool {
-    // OpenGL claims it without looking.
-    if format!("{:?}", info.backend) == "Gl" {
-        return false;
-    }
-    let features = device.features();
+fn can_draw(limits: &WgpuLimits, layers: TextureUsages) -> bool {
+    limits.max_storage_buffers_per_shader_stage > 0
+        && layers.contains(TextureUsages::RENDER_ATTACHMENT)
+}
+
+/// By either of two features: one is for this alone, the other lets an adapter do what it can.
+fn can_blend(features: WgpuFeatures, layers: TextureFormatFeatureFlags) -> bool {
     features.contains(WgpuFeatures::FLOAT32_BLENDABLE)
         || (features.contains(WgpuFeatures::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
-            && adapter
-                .get_texture_format_features(LAYER_FORMAT)
-                .flags
-                .contains(TextureFormatFeatureFlags::BLENDABLE))
+            && layers.contains(TextureFormatFeatureFlags::BLENDABLE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        FluidPlugin,
+        prelude::{FluidParticles, ScreenSpaceFluid},
+        render::ViewBodies,
+    };
+    use bevy::render::RenderApp;
+    use fluid_stage::{capture, headless_app, settle};
+
+    #[test]
+    fn drawing_takes_storage_buffers_and_layers_that_can_be_drawn_to() {
+        let [none, some] = [0, 1].map(|count| WgpuLimits {
+            max_storage_buffers_per_shader_stage: count,
+            ..default()
+        });
+        let all = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        assert!(can_draw(&some, all));
+        assert!(!can_draw(&none, all));
+        assert!(!can_draw(&some, TextureUsages::TEXTURE_BINDING));
+    }
+
+    #[test]
+    fn blending_takes_one_feature_or_the_adapters_own_word() {
+        let blendable = TextureFormatFeatureFlags::BLENDABLE;
+        let nothing = TextureFormatFeatureFlags::empty();
+        let own = WgpuFeatures::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+        assert!(can_blend(WgpuFeatures::FLOAT32_BLENDABLE, nothing));
+        assert!(can_blend(own, blendable));
+        assert!(!can_blend(own, nothing));
+        assert!(!can_blend(WgpuFeatures::empty(), blendable));
+    }
+
+    /// A scene on a device that cannot draw fluids: as if there were none.
+    #[test]
+    fn without_support_nothing_is_drawn_and_nothing_goes_wrong() {
+        let mut pictures = [true, false].map(|fluids| {
+            let mut app = headless_app(UVec2::splat(32), |app| {
+                app.add_plugins(FluidPlugin::default());
+                app.world_mut()
+                    .spawn((Camera3d::default(), ScreenSpaceFluid::default()));
+            })
+            .unwrap();
+            settle(&mut app).unwrap();
+            let render_app = app.sub_app_mut(RenderApp).world_mut();
+            render_app.resource_mut::<FluidSupport>().drawing = false;
+            if fluids {
+                let ahead = vec![Vec3::NEG_Z * 3.0];
+                app.world_mut().spawn(FluidParticles::new(ahead, 1.0));
+            }
+            settle(&mut app).unwrap();
+            let views = app.sub_app(RenderApp).world().iter_entities();
+            assert_eq!(
+                views.filter(|view| view.contains::<ViewBodies>()).count(),
+                0
+            );
+            // Fails if the GPU's validation has complained.
+            capture(&mut app).unwrap()
+        });
+        let [with, without] = &mut pictures;
+        assert!(with == without);
+    }
 }

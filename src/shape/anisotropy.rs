@@ -26,6 +26,12 @@ const SPREAD: [f32; 2] = [1e-4, 1e-3];
 /// 0.25 at it, for particles moved by up to 0.2 spacings from a lattice.
 const SURFACE: [f32; 2] = [0.05, 0.15];
 
+/// Radius, in particle radii, of the sphere that stands for an interior particle. Nobody sees it but
+/// an eye among them, to whom it says that there is liquid: so it reaches over the gaps between
+/// particles (√3 on a lattice, more where they are moved) and yet not to the surface, which is
+/// [`SHELL`](super::classify::SHELL) away at least.
+const INTERIOR_RADIUS: f32 = 2.4;
+
 /// f16 rounds the axes by up to 1/2048 and the bounding box must hold them.
 const BOX_MARGIN: f32 = 1.001;
 
@@ -101,7 +107,7 @@ impl Splatting<'_> {
         let mut batch = Batch::default();
         for (sorted, &class) in (first..).zip(classes) {
             let out = &mut out[class as usize];
-            let interior_radius = self.kernel.radius_scale * self.radius;
+            let interior_radius = self.kernel.radius_scale.max(INTERIOR_RADIUS) * self.radius;
             let radius = match class {
                 Class::Bulk if self.kernel.anisotropic => {
                     if batch.push(sorted) {

@@ -31,7 +31,7 @@ const FULL_ANISOTROPY: f32 = 0.15;
 /// already. Measured on lattices with particles moved by up to 0.35 spacings, 3.0 leaves
 /// 0.8 % of the interior less than two spacings deep, 3.5 nothing, and 4.0 costs another
 /// fifth of the interior.
-const SHELL: f32 = 3.5;
+pub(super) const SHELL: f32 = 3.5;
 
 /// Classes of the sorted particles.
 #[derive(Default)]

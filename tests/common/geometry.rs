@@ -2,6 +2,7 @@
 
 use bevy::math::{Affine3A, DAffine3, DMat3, DVec2, DVec3, UVec2, Vec2, Vec3};
 use bevy::prelude::Transform;
+use bevy_fluid::shape::Splat;
 
 use super::{Lens, View};
 
@@ -35,12 +36,24 @@ impl View {
         let half_height = match self.lens {
             Lens::Perspective { fov, .. } => (0.5 * f64::from(fov)).tan(),
             Lens::Orthographic { height, .. } => 0.5 * f64::from(height),
+            Lens::Matrix(_) => panic!("a matrix has no one extent"),
         };
         DVec2::new(aspect * half_height, half_height)
     }
 
     /// The ray through a point on screen in pixels.
     pub(crate) fn ray(&self, point: DVec2) -> Ray {
+        if let Lens::Matrix(clip_from_view) = self.lens {
+            let view_from_clip = clip_from_view.as_dmat4().inverse();
+            let [near, far] =
+                [1.0, 0.0].map(|d| view_from_clip * self.ndc(point).extend(d).extend(1.0));
+            // The far point may be at infinity (w = 0).
+            let along = far.truncate() * near.w - near.truncate() * far.w;
+            return Ray {
+                origin: near.truncate() / near.w,
+                direction: (along * near.w.signum()).normalize(),
+            };
+        }
         let across = self.ndc(point) * self.half_extent();
         match self.lens {
             Lens::Perspective { near, .. } => {
@@ -54,6 +67,7 @@ impl View {
                 origin: across.extend(-f64::from(near)),
                 direction: DVec3::NEG_Z,
             },
+            Lens::Matrix(_) => unreachable!("done above"),
         }
     }
 
@@ -63,16 +77,23 @@ impl View {
         match self.lens {
             Lens::Perspective { near, .. } => f64::from(near) / device,
             Lens::Orthographic { near, far, .. } => f64::from(far) - device * f64::from(far - near),
+            Lens::Matrix(_) => panic!("depth differs from pixel to pixel"),
         }
     }
 
     /// The point in view space at a point on screen in pixels and a device depth.
     pub(crate) fn unproject(&self, point: DVec2, device: f32) -> DVec3 {
+        if let Lens::Matrix(clip_from_view) = self.lens {
+            let clip = self.ndc(point).extend(device.into()).extend(1.0);
+            let at = clip_from_view.as_dmat4().inverse() * clip;
+            return at.truncate() / at.w;
+        }
         let z = self.depth(device);
         let across = self.ndc(point) * self.half_extent();
         match self.lens {
             Lens::Perspective { .. } => (across * z).extend(-z),
             Lens::Orthographic { .. } => across.extend(-z),
+            Lens::Matrix(_) => unreachable!("done above"),
         }
     }
 
@@ -80,8 +101,37 @@ impl View {
     pub(crate) fn half_extent_at(&self, depth: f64) -> DVec2 {
         match self.lens {
             Lens::Perspective { .. } => self.half_extent() * depth,
-            Lens::Orthographic { .. } => self.half_extent(),
+            Lens::Orthographic { .. } | Lens::Matrix(_) => self.half_extent(),
         }
+    }
+
+    /// Device depth of a point in view space.
+    pub(crate) fn device(&self, at: DVec3) -> f32 {
+        let device = match self.lens {
+            Lens::Perspective { near, .. } => f64::from(near) / -at.z,
+            Lens::Orthographic { near, far, .. } => (f64::from(far) + at.z) / f64::from(far - near),
+            Lens::Matrix(clip_from_view) => {
+                let clip = clip_from_view.as_dmat4() * at.extend(1.0);
+                clip.z / clip.w
+            }
+        };
+        device as f32
+    }
+
+    /// Where a point of view space is on screen in pixels, if it is before the eye.
+    pub(crate) fn project(&self, at: DVec3) -> Option<DVec2> {
+        let ndc = match self.lens {
+            Lens::Perspective { .. } => at.truncate() / -at.z / self.half_extent(),
+            Lens::Orthographic { .. } => at.truncate() / self.half_extent(),
+            Lens::Matrix(clip_from_view) => {
+                let clip = clip_from_view.as_dmat4() * at.extend(1.0);
+                clip.truncate().truncate() / clip.w
+            }
+        };
+        let pixel = (ndc * DVec2::new(0.5, -0.5) + 0.5) * self.size.as_dvec2();
+        // A parallel view has no eye to be behind.
+        let before = at.z < 0.0 || matches!(self.lens, Lens::Orthographic { .. });
+        before.then_some(pixel)
     }
 
     fn view_from_world(&self) -> DAffine3 {
@@ -119,11 +169,28 @@ impl Ellipsoid {
         }
     }
 
+    /// A splat of a fluid that stands at `transform`.
+    pub(crate) fn of_splat(view: &View, transform: &Transform, splat: &Splat) -> Self {
+        let unit = DAffine3 {
+            matrix3: splat.matrix().as_dmat3(),
+            translation: Vec3::from(splat.center).as_dvec3(),
+        };
+        let view_from_unit = view.view_from_world() * affine(transform) * unit;
+        Self {
+            view_from_unit,
+            unit_from_view: view_from_unit.inverse(),
+        }
+    }
+
     /// Particles of one radius in world space.
     pub(crate) fn spheres(view: &View, positions: &[Vec3], radius: f32) -> Vec<Self> {
         let place = Transform::IDENTITY;
         let sphere = |&position| Self::new(view, &place, position, radius);
         positions.iter().map(sphere).collect()
+    }
+
+    pub(crate) fn center(&self) -> DVec3 {
+        self.view_from_unit.translation
     }
 
     /// Distances along the ray at which it enters and leaves; negative before its origin.

@@ -2,8 +2,11 @@
 
 #![allow(dead_code, unused_imports, reason = "each test file uses a part")]
 
+pub(crate) mod against;
 pub(crate) mod exit;
 pub(crate) mod geometry;
+mod matrix_projection;
+pub(crate) mod sound;
 
 #[path = "../../src/shape/oracle.rs"]
 pub(crate) mod oracle;
@@ -23,9 +26,11 @@ use fluid_stage::{TextureData, headless_app, read_texture};
 
 pub(crate) use fluid_stage::settle;
 
+pub(crate) use against::{INSIDE, NOTHING, assert_layers, compare_layers, union};
 pub(crate) use exit::Exit;
 pub(crate) use geometry::{Ellipsoid, Ray, angle, decode_normal};
 pub(crate) use oracle::{Random, lattice};
+pub(crate) use sound::assert_sound;
 
 /// Every particle is a sphere of its radius, in the bulk.
 pub(crate) const BULK: SurfaceKernel = SurfaceKernel {
@@ -66,8 +71,17 @@ pub(crate) struct View {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Lens {
-    Perspective { fov: f32, near: f32 },
-    Orthographic { height: f32, near: f32, far: f32 },
+    Perspective {
+        fov: f32,
+        near: f32,
+    },
+    Orthographic {
+        height: f32,
+        near: f32,
+        far: f32,
+    },
+    /// Clip from view, whatever it is.
+    Matrix(Mat4),
 }
 
 impl View {
@@ -97,6 +111,9 @@ impl View {
                     },
                     ..OrthographicProjection::default_3d()
                 })
+            }
+            Lens::Matrix(clip_from_view) => {
+                Projection::custom(matrix_projection::Fixed(clip_from_view))
             }
         }
     }

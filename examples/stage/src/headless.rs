@@ -13,6 +13,7 @@ use bevy::{
         render_asset::RenderAssets,
         render_resource::PollType,
         renderer::{RenderAdapterInfo, RenderDevice},
+        settings::WgpuSettings,
         texture::GpuImage,
     },
     time::TimeUpdateStrategy,
@@ -35,8 +36,17 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// An app without a window, ready for [`settle`] and [`step`]: `configure` adds what is to be
 /// shown. Its clock stands still until [`set_time_step`].
 pub fn headless_app(size: UVec2, configure: impl FnOnce(&mut App)) -> Result<App, StageError> {
+    headless_app_with(size, WgpuSettings::default(), configure)
+}
+
+/// The same on a device that is not Bevy's default: with fewer features, or tighter limits.
+pub fn headless_app_with(
+    size: UVec2,
+    settings: WgpuSettings,
+    configure: impl FnOnce(&mut App),
+) -> Result<App, StageError> {
     let mut app = App::new();
-    app.add_plugins(plugins::headless(size)?);
+    app.add_plugins(plugins::headless(size, settings)?);
     configure(&mut app);
     finish(&mut app);
     Ok(app)

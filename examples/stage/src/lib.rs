@@ -39,7 +39,8 @@ mod timing;
 pub use args::ArgumentError;
 pub use error::StageError;
 pub use headless::{
-    adapter_name, capture, headless_app, resize, set_time_step, settle, step, validation_errors,
+    adapter_name, capture, headless_app, headless_app_with, resize, set_time_step, settle, step,
+    validation_errors,
 };
 pub use picture::PendingPicture;
 pub use plugins::{StagePlugins, VIEW_SIZE};

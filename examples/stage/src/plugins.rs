@@ -12,7 +12,7 @@ use bevy::{
     prelude::*,
     render::{
         RenderPlugin, diagnostic::RenderDiagnosticsPlugin,
-        pipelined_rendering::PipelinedRenderingPlugin,
+        pipelined_rendering::PipelinedRenderingPlugin, settings::WgpuSettings,
     },
     time::TimeUpdateStrategy,
     window::ExitCondition,
@@ -68,7 +68,7 @@ impl PluginGroup for StagePlugins {
         let wants_window = self.out.is_none();
         let group = match self.out.clone() {
             _ if wants_window && !Stage::has_display() => Err(StageError::NoDisplay),
-            Some(out) => headless(self.size).map(|group| {
+            Some(out) => headless(self.size, WgpuSettings::default()).map(|group| {
                 group.add(PicturePlugin {
                     out,
                     frames: self.frames,
@@ -108,7 +108,10 @@ fn windowed(size: UVec2, title: String) -> Result<PluginGroupBuilder, StageError
 
 /// The plugins of a stage without a window; its clock stands still until a
 /// [`TimeUpdateStrategy`] moves it.
-pub(crate) fn headless(size: UVec2) -> Result<PluginGroupBuilder, StageError> {
+pub(crate) fn headless(
+    size: UVec2,
+    settings: WgpuSettings,
+) -> Result<PluginGroupBuilder, StageError> {
     check(size)?;
     let group = DefaultPlugins
         .set(WindowPlugin {
@@ -118,6 +121,7 @@ pub(crate) fn headless(size: UVec2) -> Result<PluginGroupBuilder, StageError> {
         })
         .set(RenderPlugin {
             synchronous_pipeline_compilation: true,
+            render_creation: settings.into(),
             ..default()
         })
         .set(LogPlugin {

@@ -7,7 +7,7 @@
 }
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
 #import bevy_fluid::render::refract::layers::{
-    BULK, FRONT, SPRAY, layer_normal, load_layers, load_normal, on_screen,
+    BACK, BULK, FRONT, SPRAY, layer_depth, layer_normal, load_layers, load_normal, on_screen,
 }
 #import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
 #import bevy_fluid::render::types::{
@@ -15,6 +15,7 @@
     STATUS_TOTAL_REFLECTION,
 }
 
+const MAX_HALF: f32 = 65504.0;
 const INTERFACES: u32 = #{INTERFACES}u;
 // There is a second class to enter.
 const BOTH_CLASSES: bool = #{BOTH_CLASSES};
@@ -121,6 +122,21 @@ fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
     return distance(view_from_device(ndc, span.y), view_from_device(ndc, span.x));
 }
 
+// Whether a point is in the liquid of a class. Of the spray only its hindmost droplet counts: there
+// may be air between that and the front one.
+fn in_liquid(kind: u32, position: vec3<f32>) -> bool {
+    let pixel = pixel_of(position);
+    if !on_screen(pixel) {
+        return false;
+    }
+    let front = layer_depth(kind, FRONT, pixel);
+    let back = layer_depth(kind, BACK, pixel);
+    let z = -position.z;
+    let to_back = back.z - z;
+    return front.there && back.there && z > front.z && to_back > 0.02 * body.radius
+        && (kind == BULK || to_back < 2.0 * body.radius);
+}
+
 // Follows the path inside and outside until the budget is spent or nothing more is met.
 fn trace(path: ptr<function, Path>) {
     var both = false;
@@ -143,6 +159,13 @@ fn trace(path: ptr<function, Path>) {
         }
         (*path).transmission *= transmitted(found.t);
         (*path).position = hit;
+        if BOTH_CLASSES && in_liquid(1u - (*path).kind, hit) {
+            // Bulk and spray overlap: no interface lies between them.
+            (*path).kind = 1u - (*path).kind;
+            may_enter = false;
+            both = false;
+            continue;
+        }
         if !cross_interface(path, n, false) {
             note(path, STATUS_TOTAL_REFLECTION);
             both = true;
@@ -247,7 +270,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
 
     var out: Output;
-    out.radiance = vec4(path.radiance, 1.0);
+    // The sun in a smooth surface is brighter than f16 can tell.
+    out.radiance = vec4(min(path.radiance, vec3(MAX_HALF)), 1.0);
     out.transmission = vec4(path.transmission, 1.0);
     out.exit = pack_exit(path);
     return out;

@@ -35,7 +35,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let zyy = down - 2.0 * z + up;
     let zxy = 0.25 * diagonal;
     // C_x, C_y of the paper: extent of a pixel at depth 1.
-    let c = 2.0 / (view.main_pass_viewport.zw * vec2(view.clip_from_view[0][0], view.clip_from_view[1][1]));
+    // A mirrored view has no negative extents.
+    let focal = abs(vec2(view.clip_from_view[0][0], view.clip_from_view[1][1]));
+    let c = 2.0 / (view.main_pass_viewport.zw * focal);
     let cx2 = c.x * c.x;
     let cy2 = c.y * c.y;
     // A pixel grows with depth in perspective only.

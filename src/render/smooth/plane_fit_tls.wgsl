@@ -6,6 +6,8 @@
 #import bevy_fluid::render::bindings::view
 #import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
 
+const SPREAD: f32 = 1e-6;
+
 struct Output {
     @location(0) layers: vec4<f32>,
 #ifdef NORMALS
@@ -56,8 +58,16 @@ fn rotate(
     *vp = v;
 }
 
-// Unit eigenvector of the smallest eigenvalue of a symmetric matrix: four cyclic Jacobi sweeps.
-fn smallest_eigenvector(diagonal: vec3<f32>, products: vec3<f32>) -> vec3<f32> {
+struct Smallest {
+    // Unit length.
+    eigenvector: vec3<f32>,
+    // The middle eigenvalue over the largest: near 0 for points on a line, which lies in every plane
+    // about it.
+    spread: f32,
+}
+
+// Of the eigenvalues of a symmetric matrix: four cyclic Jacobi sweeps.
+fn smallest(diagonal: vec3<f32>, products: vec3<f32>) -> Smallest {
     let size = max(max(diagonal.x, max(diagonal.y, diagonal.z)), 1e-30);
     var xx = diagonal.x / size;
     var yy = diagonal.y / size;
@@ -73,10 +83,11 @@ fn smallest_eigenvector(diagonal: vec3<f32>, products: vec3<f32>) -> vec3<f32> {
         rotate(&yy, &zz, &yz, &xy, &zx, &vy, &vz);
         rotate(&zz, &xx, &zx, &yz, &xy, &vz, &vx);
     }
+    let largest = max(xx, max(yy, zz));
     if zz <= xx && zz <= yy {
-        return vz;
+        return Smallest(vz, min(xx, yy) / largest);
     }
-    return select(vy, vx, xx <= yy);
+    return Smallest(select(vy, vx, xx <= yy), min(max(xx, yy), zz) / largest);
 }
 
 struct Plane {
@@ -94,11 +105,12 @@ fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
     let mean = m.mean / total;
     let diagonal = m.squares / total - mean * mean;
     let products = m.products / total - mean * mean.yzx;
-    let n = smallest_eigenvector(diagonal, products);
+    let least = smallest(diagonal, products);
+    let n = least.eigenvector;
     let facing = dot(n, ray.direction);
-    out.normal = select(n, -n, facing > 0.0);
-    // A plane along the ray has no depth there.
-    out.good = m.count >= 3.0 && abs(facing) > 1e-4;
+    // A plane along the ray has no depth there, and f32 tells no plane from a line below the spread.
+    out.good = m.count >= 3.0 && least.spread > SPREAD && abs(facing) > 1e-4;
+    out.normal = select(-ray.direction, select(n, -n, facing > 0.0), out.good);
     let t = dot(n, mean) / select(1.0, facing, out.good);
     out.depth = device_from_view(origin + t * ray.direction).z;
     return out;

@@ -95,5 +95,9 @@ fn accept(window: Window, fitted: vec2<f32>, good: vec2<bool>) -> vec2<f32> {
     let moved = abs(view_depths(window.map, fitted) - window.depth);
     let near_enough = moved <= vec2(body.bound);
     let in_range = vec2(fitted.x > 0.0 && fitted.x < INSIDE_FRONT, fitted.y < 0.0 && fitted.y >= -1.0);
-    return select(window.center.xy, fitted, window.valid & good & near_enough & in_range);
+    let out = select(window.center.xy, fitted, window.valid & good & near_enough & in_range);
+    // Fitted each on its own, front and back of a thin sheet may pass each other: no thickness
+    // then.
+    let crossed = all(window.valid) && out.x < -out.y;
+    return vec2(out.x, select(out.y, -out.x, crossed));
 }

@@ -114,15 +114,20 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     let y = vec4(rows[1].xyz * axes, dot(rows[1], vec4(center, 1.0)));
     let z = vec4(rows[2].xyz * axes, dot(rows[2], vec4(center, 1.0)));
     let w = vec4(rows[3].xyz * axes, dot(rows[3], vec4(center, 1.0)));
-    let near_point = view.view_from_clip * vec4(0.0, 0.0, 1.0, 1.0);
-    let near = dot(rows[3], near_point / near_point.w);
+    // The least w on the near plane, which is at one of the screen's corners: an oblique plane
+    // comes nearer to the eye's on one side than on the other.
+    let to_w = transpose(view.view_from_clip)[3];
+    let near = 1.0 / (to_w.z + to_w.w + abs(to_w.x) + abs(to_w.y));
     let bound_x = bound(x, w, near * 0.999);
     let bound_y = bound(y, w, near * 0.999);
 
     var out: EllipsoidVertex;
     let seen = bound_x.x <= bound_x.y && bound_y.x <= bound_y.y;
-    // A hair wider than the exact bound: rounding must not cut off a covered pixel centre.
-    let slack = 0.02 * 2.0 / view.main_pass_viewport.zw;
+    // A hair wider than the exact bound: rounding must not cut off a covered pixel centre. What is
+    // smaller than a pixel still takes the one that holds it.
+    let pixel = 2.0 / view.main_pass_viewport.zw;
+    let size = vec2(bound_x.y - bound_x.x, bound_y.y - bound_y.x);
+    let slack = select(vec2(0.02), vec2(0.52), size < pixel) * pixel;
     let low = max(vec2(bound_x.x, bound_y.x) - slack, vec2(-1.5));
     let high = min(vec2(bound_x.y, bound_y.y) + slack, vec2(1.5));
     let corner_ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
@@ -176,20 +181,37 @@ fn polar_normal(in: EllipsoidVertex, a: vec4<f32>, ndc: vec2<f32>, depth: f32) -
     return (plane * view.clip_from_view).xyz;
 }
 
-// Both depths from one quadratic, about the point half way between them.
-fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
-    var out: Intersection;
-    let offset = in.position.xy - in.center.xy;
+// The line of sight through a point of the screen, about its point half way through the ellipsoid.
+struct Chord {
+    nearest: vec4<f32>,
+    middle: f32,
+    // Negative where it misses.
+    disc: f32,
+}
+
+fn chord_at(in: EllipsoidVertex, offset: vec2<f32>, dd: f32) -> Chord {
     let a = vec4(0.0, 0.0, 0.0, 1.0) + offset.x * in.x + offset.y * in.y;
-    let dd = form(in.d, in.d);
     let middle = -form(a, in.d) / dd;
     let nearest = a + middle * in.d;
-    let disc = -form(nearest, nearest);
-    let half_chord = sqrt(max(disc, 0.0) / dd);
-    let front = in.center.z + (middle + half_chord);
-    let back = in.center.z + (middle - half_chord);
+    return Chord(nearest, middle, -form(nearest, nearest));
+}
+
+// Both depths from one quadratic.
+fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
+    var out: Intersection;
+    let dd = form(in.d, in.d);
+    var chord = chord_at(in, in.position.xy - in.center.xy, dd);
+    if chord.disc < 0.0 && all(floor(in.position.xy) == floor(in.center.xy)) {
+        // Too small for this pixel's centre. It is met in its own middle, or droplets in motion
+        // would come and go as they pass the centres of pixels.
+        chord = chord_at(in, vec2(0.0), dd);
+    }
+    let nearest = chord.nearest;
+    let half_chord = sqrt(max(chord.disc, 0.0) / dd);
+    let front = in.center.z + (chord.middle + half_chord);
+    let back = in.center.z + (chord.middle - half_chord);
     // Not beyond an orthographic far plane, and a number at all.
-    out.hit = disc >= 0.0 && front > 0.0;
+    out.hit = chord.disc >= 0.0 && front > 0.0;
     // A front is kept a step below INSIDE_FRONT, which has a meaning of its own.
     out.layers = vec2(min(front, 0.9999999), -clamp(back, 1e-30, 1.0));
     let ndc = ndc_from_pixel(in.position.xy);
