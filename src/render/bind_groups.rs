@@ -138,9 +138,9 @@ impl Sources<'_> {
         self.normals.bind_group(&self.device, &self.cache, view)
     }
 
-    /// The environment map; white where there is none, which the uniform's intensity of 0 hides.
-    fn environment(&self, body: &Body) -> &GpuImage {
-        body.environment
+    /// A cubemap; white where there is none, which the uniform's intensity of 0 hides.
+    fn cube(&self, image: Option<AssetId<Image>>) -> &GpuImage {
+        image
             .and_then(|id| self.images.get(id))
             .unwrap_or(&self.fallback.cube)
     }
@@ -152,13 +152,19 @@ impl Sources<'_> {
             "fluid_refract",
             &layout,
             &BindGroupEntries::sequential((
-                &self.environment(body).texture_view,
+                &self.cube(body.environment).texture_view,
                 &self.placeholders.linear,
                 layers.bulk_view(),
                 &layers.bulk_normals.default_view,
                 &layers.spray.default_view,
                 &layers.spray_normals.default_view,
                 &self.placeholders.nearest,
+                &self.cube(body.diffuse).texture_view,
+                &layers
+                    .thickness
+                    .as_ref()
+                    .unwrap_or(&self.placeholders.layers)
+                    .default_view,
             )),
         )
     }
@@ -170,7 +176,7 @@ impl Sources<'_> {
             "fluid_composite",
             &layout,
             &BindGroupEntries::sequential((
-                &self.environment(body).texture_view,
+                &self.cube(body.environment).texture_view,
                 &self.placeholders.linear,
                 &layers.radiance.default_view,
                 &layers.transmission.default_view,

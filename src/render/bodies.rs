@@ -27,7 +27,7 @@ use super::{
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
     smooth::{SmoothGroups, SmoothSteps},
-    support::FluidSupport,
+    support::{FluidSupport, Shortcuts},
 };
 use crate::{
     material::FluidMaterial,
@@ -49,6 +49,7 @@ pub struct Body {
     pub(crate) debug: bool,
     pub(crate) depth_range_offset: u32,
     pub(crate) environment: Option<AssetId<Image>>,
+    pub(crate) diffuse: Option<AssetId<Image>>,
     view_offset: u32,
     body_offset: u32,
     ready: bool,
@@ -129,6 +130,7 @@ pub(crate) fn prepare_fluids(
     for (fluid, mut gpu) in &mut fluids {
         gpu.offset = uniforms.fluids.push(&GpuFluid {
             world_from_local: fluid.transform.to_matrix(),
+            radius: fluid.local_radius,
         });
     }
     uniforms.fluids.write_buffer(&device, &queue);
@@ -154,6 +156,7 @@ pub(crate) fn prepare_bodies(
     images: Res<RenderAssets<GpuImage>>,
     clear_color: Res<ClearColor>,
     support: Res<FluidSupport>,
+    shortcuts: Res<Shortcuts>,
     placeholders: Res<Placeholders>,
     mut pipelines: Pipelines,
     mut textures: ResMut<TextureCache>,
@@ -199,19 +202,21 @@ pub(crate) fn prepare_bodies(
             let count = |of: fn(&ExtractedFluid) -> u32| {
                 members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
             };
+            let radius = members.iter().map(|(_, f)| f.radius).fold(0.0, f32::max);
             let planned = plan(&PlanInput {
                 in_view: scissor.is_some(),
                 near_plane_cuts: bounds.near_plane_cuts(&clip_from_world),
                 bulk: count(|fluid| fluid.bulk),
                 interior: count(|fluid| fluid.interior),
                 spray: count(|fluid| fluid.spray),
-                refractive_index: material.refractive_index,
+                radius,
+                material,
+                shortcuts: shortcuts.0,
                 settings: *settings,
             });
             let (Some(plan), Some(scissor)) = (planned, scissor) else {
                 continue;
             };
-            let radius = members.iter().map(|(_, f)| f.radius).fold(0.0, f32::max);
             let steps = SmoothSteps::new(&plan.smoothing);
             let map = surroundings
                 .map
@@ -226,6 +231,16 @@ pub(crate) fn prepare_bodies(
                     * Mat3::from_quat(map.rotation.inverse());
                 body.environment_intensity = map.intensity * camera.exposure;
             }
+            let diffuse = surroundings
+                .map
+                .as_ref()
+                .and_then(|map| Some((map.diffuse.as_ref()?.id(), map.intensity)))
+                .filter(|(id, _)| is_cubemap(&images, *id));
+            if let Some((_, intensity)) = diffuse {
+                body.diffuse_intensity = intensity * camera.exposure;
+            }
+            body.even_light = lights.even(surroundings.ambient) * camera.exposure;
+            body.emission = material.medium.emission.to_vec3() * camera.exposure;
             body.clear_color = match camera.clear_color {
                 ClearColorConfig::Custom(color) => color,
                 _ => clear_color.0,
@@ -237,7 +252,7 @@ pub(crate) fn prepare_bodies(
                 format: view.target_format,
                 samples: msaa.samples(),
             };
-            let pipelines = pipelines.of(&plan, &steps, settings, support.max_blend, composite);
+            let pipelines = pipelines.of(&plan, &steps, settings, &support, composite);
             let layers = Layers::new(
                 &mut textures,
                 &device,
@@ -264,6 +279,7 @@ pub(crate) fn prepare_bodies(
                     debug: debug_view.is_some(),
                     depth_range_offset: uniforms.depth_ranges.push(&depths),
                     environment: map.map(|map| map.image.id()),
+                    diffuse: diffuse.map(|(id, _)| id),
                     view_offset: offset.offset,
                     body_offset: uniforms.bodies.push(&body),
                     ready: false,

@@ -30,11 +30,17 @@ pub(crate) struct FluidSupport {
     /// Fluids can be drawn at all.
     pub(crate) drawing: bool,
     pub(crate) max_blend: bool,
+    /// What sums over particles are kept in.
+    pub(crate) thickness_format: TextureFormat,
 }
 
 /// The wish of [`FluidPlugin`](crate::FluidPlugin), in the render world.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(crate) struct WantedBlending(pub(crate) LayerBlending);
+
+/// Whether the plan may leave work out, likewise.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(crate) struct Shortcuts(pub(crate) bool);
 
 pub(crate) fn init_support(
     mut commands: Commands,
@@ -55,7 +61,8 @@ pub(crate) fn init_support(
             info.name
         );
     }
-    let can_blend = can_blend(&device, &adapter, &info);
+    let can_blend_in = |format| can_blend(&device, &adapter, &info, format);
+    let can_blend = can_blend_in(LAYER_FORMAT);
     let max_blend = match wanted.0 {
         LayerBlending::DepthDraws => false,
         LayerBlending::Auto | LayerBlending::MaxBlend => can_blend,
@@ -66,10 +73,25 @@ pub(crate) fn init_support(
             info.name
         );
     }
-    commands.insert_resource(FluidSupport { drawing, max_blend });
+    // Halves can be blended everywhere; they hold a sum to a two thousandth at best.
+    let thickness_format = if max_blend && can_blend_in(TextureFormat::R32Float) {
+        TextureFormat::R32Float
+    } else {
+        TextureFormat::R16Float
+    };
+    commands.insert_resource(FluidSupport {
+        drawing,
+        max_blend,
+        thickness_format,
+    });
 }
 
-fn can_blend(device: &RenderDevice, adapter: &RenderAdapter, info: &RenderAdapterInfo) -> bool {
+fn can_blend(
+    device: &RenderDevice,
+    adapter: &RenderAdapter,
+    info: &RenderAdapterInfo,
+    format: TextureFormat,
+) -> bool {
     // OpenGL claims it without looking.
     if format!("{:?}", info.backend) == "Gl" {
         return false;
@@ -78,7 +100,7 @@ fn can_blend(device: &RenderDevice, adapter: &RenderAdapter, info: &RenderAdapte
     features.contains(WgpuFeatures::FLOAT32_BLENDABLE)
         || (features.contains(WgpuFeatures::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
             && adapter
-                .get_texture_format_features(LAYER_FORMAT)
+                .get_texture_format_features(format)
                 .flags
                 .contains(TextureFormatFeatureFlags::BLENDABLE))
 }
