@@ -17,11 +17,12 @@ use bevy::{
 };
 
 use super::{
-    bounds::Bounds,
-    composite::CompositeKey,
+    bounds::{Bounds, far_to_near},
+    composite::{CompositeKey, CompositePart},
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
     gpu_types::{GpuBody, GpuFluid},
     layers::Layers,
+    lighting::{Cubemaps, Lighting},
     pipelines::{BodyPipelines, Pipelines},
     plan::{Plan, PlanInput, plan},
     scene_depth::SCENE_DEPTH_FORMAT,
@@ -48,8 +49,7 @@ pub struct Body {
     pub(crate) groups: BodyGroups,
     pub(crate) debug: bool,
     pub(crate) depth_range_offset: u32,
-    pub(crate) environment: Option<AssetId<Image>>,
-    pub(crate) diffuse: Option<AssetId<Image>>,
+    pub(crate) cubemaps: Cubemaps,
     view_offset: u32,
     body_offset: u32,
     ready: bool,
@@ -98,7 +98,10 @@ pub struct ViewBodies {
     /// From far to near.
     pub bodies: Vec<Body>,
     pub(crate) viewport: URect,
+    /// The colour that a body is painted over; none in debug views.
     pub(crate) scene_color: Option<CachedTexture>,
+    /// The colour before any body is painted, where there are several.
+    pub(crate) scene_before: Option<CachedTexture>,
     pub(crate) scene_depth: CachedTexture,
     pub(crate) scene_depth_group: Option<BindGroup>,
     pub(crate) multisampled: bool,
@@ -187,17 +190,37 @@ pub(crate) fn prepare_bodies(
         let clip_from_world = view
             .clip_from_world
             .unwrap_or_else(|| view.clip_from_view * Mat4::from(view_from_world));
-        let eye = view.world_from_view.translation();
+        let mut eye = view.world_from_view.translation();
+        if view.clip_from_view.w_axis.w == 1.0 {
+            // Orthographic: all rays come from far behind.
+            eye += view.world_from_view.back() * 1e6;
+        }
+
+        let lighting = Lighting {
+            surroundings,
+            lights: &lights,
+            images: &images,
+            clear_color: match camera.clear_color {
+                ClearColorConfig::Custom(color) => color,
+                _ => clear_color.0,
+            },
+            exposure: camera.exposure,
+        };
 
         let mut bodies = Vec::new();
         let visible: Vec<_> = fluids
             .iter()
             .filter(|(_, fluid)| fluid.visible && fluid.layers.intersects(&surroundings.layers))
             .collect();
-        for (material, members) in by_material(&visible) {
-            let bounds = members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
-                bounds.union(fluid.bounds.transformed(&fluid.transform.affine()))
-            });
+        let groups = by_material(&visible);
+        let boxes: Vec<_> = groups
+            .iter()
+            .map(|(_, members)| bounds_of(members))
+            .collect();
+        let several = groups.len() > 1;
+        let mut behind = None;
+        for i in far_to_near(eye, &boxes) {
+            let ((material, members), bounds) = (&groups[i], boxes[i]);
             let scissor = bounds.scissor(&clip_from_world, viewport);
             let count = |of: fn(&ExtractedFluid) -> u32| {
                 members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
@@ -210,7 +233,7 @@ pub(crate) fn prepare_bodies(
                 interior: count(|fluid| fluid.interior),
                 spray: count(|fluid| fluid.spray),
                 radius,
-                material,
+                material: *material,
                 shortcuts: shortcuts.0,
                 settings: *settings,
             });
@@ -218,39 +241,22 @@ pub(crate) fn prepare_bodies(
                 continue;
             };
             let steps = SmoothSteps::new(&plan.smoothing);
-            let map = surroundings
-                .map
-                .as_ref()
-                .filter(|map| is_cubemap(&images, map.image.id()));
-            let mut body = GpuBody::new(&material, radius, settings, &plan.smoothing);
-            body.lights = lights.lights;
-            body.light_count = lights.count;
-            if let Some(map) = map {
-                // Cubemaps are left-handed.
-                body.environment_from_world = Mat3::from_diagonal(vec3(1.0, 1.0, -1.0))
-                    * Mat3::from_quat(map.rotation.inverse());
-                body.environment_intensity = map.intensity * camera.exposure;
+            let mut body = GpuBody::new(material, radius, settings, &plan.smoothing);
+            let cubemaps = lighting.shine_on(&mut body, material.medium.emission);
+            if let Some(center) = behind.replace(bounds.center()) {
+                let center = view_from_world.transform_point3(center);
+                body.behind = center.extend(1.0);
             }
-            let diffuse = surroundings
-                .map
-                .as_ref()
-                .and_then(|map| Some((map.diffuse.as_ref()?.id(), map.intensity)))
-                .filter(|(id, _)| is_cubemap(&images, *id));
-            if let Some((_, intensity)) = diffuse {
-                body.diffuse_intensity = intensity * camera.exposure;
-            }
-            body.even_light = lights.even(surroundings.ambient) * camera.exposure;
-            body.emission = material.medium.emission.to_vec3() * camera.exposure;
-            body.clear_color = match camera.clear_color {
-                ClearColorConfig::Custom(color) => color,
-                _ => clear_color.0,
-            }
-            .to_linear()
-            .to_vec3();
             let composite = CompositeKey {
                 debug_view: debug_view.copied(),
                 format: view.target_format,
                 samples: msaa.samples(),
+                part: if debug_view.is_none() && (several || plan.index_one) {
+                    CompositePart::Light
+                } else {
+                    CompositePart::Whole
+                },
+                several,
             };
             let pipelines = pipelines.of(&plan, &steps, settings, &support, composite);
             let layers = Layers::new(
@@ -263,41 +269,38 @@ pub(crate) fn prepare_bodies(
                 &placeholders.layers,
             );
             let depths = view_depths(&bounds, &Mat4::from(view_from_world));
-            bodies.push((
-                bounds.center().distance_squared(eye),
-                Body {
-                    plan,
-                    layers,
-                    scissor,
-                    fluids: members
-                        .iter()
-                        .map(|(entity, fluid)| drawn(*entity, fluid, plan.interior))
-                        .collect(),
-                    steps,
-                    pipelines,
-                    groups: BodyGroups::default(),
-                    debug: debug_view.is_some(),
-                    depth_range_offset: uniforms.depth_ranges.push(&depths),
-                    environment: map.map(|map| map.image.id()),
-                    diffuse: diffuse.map(|(id, _)| id),
-                    view_offset: offset.offset,
-                    body_offset: uniforms.bodies.push(&body),
-                    ready: false,
-                },
-            ));
+            bodies.push(Body {
+                plan,
+                layers,
+                scissor,
+                fluids: members
+                    .iter()
+                    .map(|(entity, fluid)| drawn(*entity, fluid, plan.interior))
+                    .collect(),
+                steps,
+                pipelines,
+                groups: BodyGroups::default(),
+                debug: debug_view.is_some(),
+                depth_range_offset: uniforms.depth_ranges.push(&depths),
+                cubemaps,
+                view_offset: offset.offset,
+                body_offset: uniforms.bodies.push(&body),
+                ready: false,
+            });
         }
         if bodies.is_empty() {
             continue;
         }
-        bodies.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         let mut texture =
             |label, format| view_texture(&mut textures, &device, label, target_size, format);
         commands.entity(entity).insert(ViewBodies {
-            bodies: bodies.into_iter().map(|(_, body)| body).collect(),
+            bodies,
             viewport: URect::from_corners(viewport.xy(), viewport.xy() + viewport.zw()),
             scene_color: debug_view
                 .is_none()
                 .then(|| texture("fluid_scene_color", view.target_format)),
+            scene_before: (several && debug_view.is_none())
+                .then(|| texture("fluid_scene_before", view.target_format)),
             scene_depth: texture("fluid_scene_depth", SCENE_DEPTH_FORMAT),
             scene_depth_group: None,
             multisampled: msaa.samples() > 1,
@@ -321,6 +324,13 @@ fn by_material<'a>(fluids: &[(Entity, &'a ExtractedFluid)]) -> Vec<(FluidMateria
     groups
 }
 
+/// The box around all of a body.
+fn bounds_of(members: &Members) -> Bounds {
+    members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
+        bounds.union(fluid.bounds.transformed(&fluid.transform.affine()))
+    })
+}
+
 /// Splats lie in the order bulk, interior, spray.
 fn drawn(entity: Entity, fluid: &ExtractedFluid, interior: bool) -> BodyFluid {
     let surface = fluid.bulk;
@@ -330,12 +340,6 @@ fn drawn(entity: Entity, fluid: &ExtractedFluid, interior: bool) -> BodyFluid {
         bulk: 0..if interior { bulk } else { surface },
         spray: bulk..bulk + fluid.spray,
     }
-}
-
-fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
-    images
-        .get(id)
-        .is_some_and(|image| image.texture.depth_or_array_layers() == 6)
 }
 
 /// Nearest and farthest depth of the box, for debug views.

@@ -48,6 +48,7 @@ pub(crate) struct GpuBody {
     pub(crate) even_light: Vec3,
     pub(crate) diffuse_intensity: f32,
     pub(crate) softness: f32,
+    pub(crate) behind: Vec4,
 }
 
 /// For methods that know no bound.

@@ -9,6 +9,7 @@ mod exit;
 mod extract;
 mod gpu_types;
 mod layers;
+mod lighting;
 mod normals;
 mod pipelines;
 mod plan;

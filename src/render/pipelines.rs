@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::{
-    composite::{CompositeKey, CompositePipeline},
+    composite::{CompositeKey, CompositePart, CompositePipeline},
     normals::{BulkNormals, NormalSource, NormalsPipeline},
     plan::Plan,
     refract::{RefractKey, RefractPipeline},
@@ -27,6 +27,8 @@ pub(crate) struct BodyPipelines {
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
     pub(crate) refract: CachedRenderPipelineId,
     pub(crate) composite: CachedRenderPipelineId,
+    /// Where light and depth are written apart.
+    pub(crate) composite_depth: Option<CachedRenderPipelineId>,
 }
 
 impl BodyPipelines {
@@ -45,6 +47,7 @@ impl BodyPipelines {
             .chain(self.bulk_normals.pipelines())
             .chain(&self.spray_normals)
             .chain([&self.refract, &self.composite])
+            .chain(&self.composite_depth)
             .all(|&id| cache.get_render_pipeline(id).is_some())
     }
 }
@@ -75,6 +78,11 @@ impl Pipelines<'_> {
     fn normals(&mut self, source: NormalSource) -> CachedRenderPipelineId {
         self.normalses
             .specialize(&self.cache, &self.normals, source)
+    }
+
+    fn composite(&mut self, key: CompositeKey) -> CachedRenderPipelineId {
+        self.composites
+            .specialize(&self.cache, &self.composite, key)
     }
 
     /// All that a body's plan asks for.
@@ -126,9 +134,17 @@ impl Pipelines<'_> {
             refract: self
                 .refracts
                 .specialize(&self.cache, &self.refract, refract),
-            composite: self
-                .composites
-                .specialize(&self.cache, &self.composite, composite),
+            composite: self.composite(composite),
+            composite_depth: (composite.part == CompositePart::Light).then(|| {
+                self.composite(CompositeKey {
+                    part: if plan.index_one {
+                        CompositePart::DenseDepth
+                    } else {
+                        CompositePart::Depth
+                    },
+                    ..composite
+                })
+            }),
         }
     }
 }

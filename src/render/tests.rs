@@ -14,7 +14,7 @@ use bevy::{
 use fluid_stage::{headless_app, settle};
 
 use super::{
-    composite::{CompositeKey, CompositePipeline},
+    composite::{CompositeKey, CompositePart, CompositePipeline},
     normals::{NormalSource, NormalsPipeline},
     plan::{MediumTerms, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
@@ -264,6 +264,23 @@ fn every_composite_and_debug_view_is_made() {
             debug_view,
             format,
             samples,
+            part: CompositePart::Whole,
+            several: false,
         });
-    assert_variants::<CompositePipeline>(keys.collect());
+    let parts = [
+        CompositePart::Light,
+        CompositePart::Depth,
+        CompositePart::DenseDepth,
+    ];
+    let parts = pairs(&pairs(&parts, &formats), &[1, 4]);
+    let parts = parts
+        .into_iter()
+        .map(|((part, format), samples)| CompositeKey {
+            debug_view: None,
+            format,
+            samples,
+            part,
+            several: true,
+        });
+    assert_variants::<CompositePipeline>(keys.chain(parts).collect());
 }

@@ -61,6 +61,8 @@ struct GpuBody {
     diffuse_intensity: f32,
     // Accumulated thickness: density (1 − q²)^softness within a splat.
     softness: f32,
+    // Centre of the next body behind this one in view space, and 1; 0: there is none.
+    behind: vec4<f32>,
 }
 
 // Depth layers hold (device depth of the front, −device depth of the back), so that one `max`

@@ -1,0 +1,141 @@
+//! Smoke and fire: particles that rise and are born again. Where each is follows from the time
+//! alone.
+
+use std::f32::consts::TAU;
+
+use bevy::prelude::*;
+use bevy_fluid::{SurfaceKernel, prelude::*};
+
+/// A column of rising puffs.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct Plume {
+    material: FluidMaterial,
+    /// How many puffs rise at a time, and the particles in each.
+    puffs: u32,
+    particles: u32,
+    /// Particle radius, m.
+    radius: f32,
+    /// How long a puff rises, s, and how high, m.
+    life: f32,
+    height: f32,
+    /// Radius of the column at its foot and at its top, m.
+    foot: f32,
+    top: f32,
+    /// Radius of a puff at its birth and at its end, m.
+    puff: [f32; 2],
+    /// How far the wind carries the column at its top, m.
+    sway: f32,
+}
+
+impl Plume {
+    pub(crate) const SMOKE: Self = Self {
+        material: FluidMaterial {
+            medium: thin(FluidMaterial::SMOKE.medium, 0.02),
+            ..FluidMaterial::SMOKE
+        },
+        puffs: 46,
+        particles: 26,
+        radius: 0.075,
+        life: 4.0,
+        height: 1.45,
+        foot: 0.03,
+        top: 0.22,
+        puff: [0.03, 0.2],
+        sway: 0.12,
+    };
+
+    pub(crate) const FIRE: Self = Self {
+        material: FluidMaterial {
+            medium: thin(FluidMaterial::FIRE.medium, 0.03),
+            ..FluidMaterial::FIRE
+        },
+        puffs: 40,
+        particles: 22,
+        radius: 0.055,
+        life: 0.9,
+        height: 1.05,
+        foot: 0.17,
+        top: 0.02,
+        puff: [0.1, 0.03],
+        sway: 0.06,
+    };
+
+    /// The fluid: balls of one class that overlap many times over.
+    pub(crate) fn fluid(&self) -> impl Bundle + use<> {
+        (
+            FluidParticles::new(self.positions(0.0).collect(), self.radius),
+            SurfaceKernel::PUFFS,
+            self.material,
+        )
+    }
+
+    fn positions(&self, seconds: f32) -> impl Iterator<Item = Vec3> + use<> {
+        let plume = *self;
+        (0..self.puffs).flat_map(move |puff| {
+            // Evenly spread births; the golden ratio keeps neighbours in time apart in place.
+            let born = puff as f32 / plume.puffs as f32;
+            let lives = seconds / plume.life + born;
+            let age = lives.fract();
+            let seed = puff.wrapping_add(lives as u32 * plume.puffs);
+            let center = plume.center(seed, age, seconds);
+            let [small, large] = plume.puff;
+            let size = small + (large - small) * age.sqrt();
+            let spin = Quat::from_rotation_y(2.0 * age * (random(seed, 7) - 0.5) * TAU);
+            (0..plume.particles).map(move |i| {
+                let key = seed.wrapping_mul(64).wrapping_add(i);
+                center + spin * in_ball(key) * size
+            })
+        })
+    }
+
+    /// Where a puff is at an age from 0 to 1.
+    fn center(&self, seed: u32, age: f32, seconds: f32) -> Vec3 {
+        // Some rise less far than others, so that the column thins out upwards.
+        let reach = 0.45 + 0.55 * random(seed, 1);
+        let rise = age * reach;
+        let out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
+        let around = Vec2::from_angle(TAU * random(seed, 3)) * out;
+        // Waves that travel up the column carry all its puffs alike.
+        let wave = |speed: f32, phase: f32| (5.0 * rise - speed * seconds + phase).sin();
+        let sway = self.sway * rise * vec2(wave(1.7, 0.0) + 0.5 * wave(3.1, 1.0), wave(2.3, 2.0));
+        let along = around + sway;
+        vec3(along.x, 0.05 + self.height * rise, along.y)
+    }
+}
+
+/// A medium of so much less matter: many puffs overlap at every place.
+const fn thin(medium: Medium, share: f32) -> Medium {
+    let LinearRgba {
+        red, green, blue, ..
+    } = medium.emission;
+    Medium {
+        scattering_density: medium.scattering_density * share,
+        absorption_density: medium.absorption_density * share,
+        emission: LinearRgba::rgb(red * share, green * share, blue * share),
+        ..medium
+    }
+}
+
+/// Evenly distributed from 0 to 1.
+fn random(seed: u32, stream: u32) -> f32 {
+    let mut bits = seed.wrapping_mul(0x9E37_79B1) ^ stream.wrapping_mul(0x85EB_CA77);
+    for _ in 0..3 {
+        bits = (bits ^ bits >> 15).wrapping_mul(0x2C1B_3C6D);
+    }
+    (bits >> 8) as f32 / (1 << 24) as f32
+}
+
+/// A point of the unit ball, denser towards its middle.
+fn in_ball(key: u32) -> Vec3 {
+    let height = 2.0 * random(key, 4) - 1.0;
+    let around = Vec2::from_angle(TAU * random(key, 5)) * (1.0 - height * height).sqrt();
+    vec3(around.x, height, around.y) * random(key, 6).sqrt()
+}
+
+/// Moves all plumes.
+pub(crate) fn blow(mut plumes: Query<(&Plume, &mut FluidParticles)>, time: Res<Time>) {
+    for (plume, mut fluid) in &mut plumes {
+        fluid.positions.clear();
+        fluid.positions.extend(plume.positions(time.elapsed_secs()));
+    }
+}
