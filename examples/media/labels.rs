@@ -10,7 +10,7 @@ use bevy::{
 use fluid_stage::scenery::Scenery;
 
 /// Height of a line in texels and in metres.
-const LINE: (f32, f32) = (48.0, 0.125);
+const LINE: (f32, f32) = (48.0, 0.115);
 
 /// A word in front of a shelf, its middle here.
 pub(crate) fn label(scenery: &mut Scenery, text: &str, at: Vec3) {
@@ -19,6 +19,7 @@ pub(crate) fn label(scenery: &mut Scenery, text: &str, at: Vec3) {
     let texture = scenery.images.add(image);
     let mesh = scenery.meshes.add(Rectangle::from_size(size));
     let material = scenery.materials.add(StandardMaterial {
+        base_color: Color::srgb(0.03, 0.03, 0.04),
         base_color_texture: Some(texture),
         unlit: true,
         alpha_mode: AlphaMode::Blend,
@@ -33,7 +34,7 @@ pub(crate) fn label(scenery: &mut Scenery, text: &str, at: Vec3) {
     ));
 }
 
-/// White letters on nothing.
+/// White letters on nothing, which the material dyes.
 fn draw(text: &str) -> Image {
     let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
         .expect("a font that comes with its crate");

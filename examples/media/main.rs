@@ -8,9 +8,9 @@
 mod labels;
 mod plumes;
 
-use std::f32::consts::PI;
+use std::time::Duration;
 
-use bevy::prelude::*;
+use bevy::{light::Skybox, prelude::*};
 use bevy_fluid::prelude::*;
 use fluid_stage::{
     StagePlugins,
@@ -34,7 +34,9 @@ const WHITE: f32 = 1000.0;
 fn main() -> AppExit {
     let stage = StagePlugins {
         size: uvec2(1600, 800),
-        frames: 150,
+        // Where a plume is follows from the time alone.
+        frames: 4,
+        time_step: Duration::from_secs_f32(0.7),
         title: "media · bevy_fluid".into(),
         ..default()
     };
@@ -50,7 +52,7 @@ fn main() -> AppExit {
 fn combinations() -> [(&'static str, Medium); 7] {
     let scattering = Medium::scattering(LinearRgba::rgb(0.75, 0.78, 0.82), 0.25);
     let absorption = Medium::absorbing(LinearRgba::rgb(0.12, 0.35, 0.9), 0.6);
-    let emission = Medium::emitting(LinearRgba::rgb(1.1, 0.32, 0.05) * WHITE, 0.6);
+    let emission = Medium::emitting(LinearRgba::rgb(1.0, 0.22, 0.02) * WHITE, 0.6);
     [
         ("nothing", Medium::CLEAR),
         ("scattering", scattering),
@@ -73,8 +75,8 @@ fn setup(mut scenery: Scenery) {
     let sky = scenery.sky(TO_SUN);
     scenery.sun(TO_SUN, 25.0, true);
     let upper = PLACE.y * Vec3::Y;
-    shelf(&mut scenery, upper, 7);
-    shelf(&mut scenery, Vec3::ZERO, 6);
+    shelf(&mut scenery, upper);
+    shelf(&mut scenery, Vec3::ZERO);
 
     for (i, (name, medium)) in combinations().into_iter().enumerate() {
         let foot = upper + place(i, 7);
@@ -109,7 +111,7 @@ fn setup(mut scenery: Scenery) {
     scenery.commands.spawn((
         orbit_camera(eye, vec3(0.0, 1.55, 0.0)),
         Projection::from(PerspectiveProjection {
-            fov: 0.27,
+            fov: 0.285,
             ..default()
         }),
         ScreenSpaceFluid::default(),
@@ -124,8 +126,8 @@ fn place(i: usize, count: usize) -> Vec3 {
 }
 
 /// A board with a wall behind it.
-fn shelf(scenery: &mut Scenery, at: Vec3, count: usize) {
-    let width = count as f32 * PLACE.x;
+fn shelf(scenery: &mut Scenery, at: Vec3) {
+    let width = 7.4 * PLACE.x;
     let board = scenery.meshes.add(Cuboid::new(width, 0.2, 1.7));
     let wood = scenery.materials.add(StandardMaterial {
         base_color: Color::srgb(0.46, 0.44, 0.42),
@@ -139,7 +141,7 @@ fn shelf(scenery: &mut Scenery, at: Vec3, count: usize) {
     ));
     let wall = scenery.meshes.add(Cuboid::new(width, PLACE.y, 0.1));
     let paint = scenery.materials.add(StandardMaterial {
-        base_color: Color::srgb(0.3, 0.34, 0.38),
+        base_color: Color::srgb(0.16, 0.18, 0.2),
         perceptual_roughness: 0.9,
         ..default()
     });
@@ -172,20 +174,10 @@ fn post(scenery: &mut Scenery, foot: Vec3) {
     }
 }
 
-/// A ball of shells of evenly spread particles that rests on this foot.
+/// A ball that rests on this foot.
 fn ball(scenery: &mut Scenery, foot: Vec3, material: FluidMaterial) {
-    let shells = (BALL / (2.0 * RADIUS)) as usize;
-    let positions = (1..=shells).flat_map(|shell| {
-        let size = 2.0 * RADIUS * (shell as f32 - 0.5);
-        let count = (4.0 * PI * (shell as f32 - 0.5).powi(2)).ceil() as usize;
-        (0..count).map(move |i| {
-            let height = 1.0 - (2 * i + 1) as f32 / count as f32;
-            let around = Vec2::from_angle(2.399_963 * i as f32) * (1.0 - height * height).sqrt();
-            vec3(around.x, height, around.y) * size
-        })
-    });
     scenery.commands.spawn((
-        FluidParticles::new(positions.collect(), RADIUS),
+        FluidParticles::new(fluid_stage::ball(BALL, RADIUS), RADIUS),
         material,
         Transform::from_translation(foot + (BALL + 0.06) * Vec3::Y),
     ));

@@ -4,7 +4,7 @@
 use std::f32::consts::TAU;
 
 use bevy::prelude::*;
-use bevy_fluid::{SurfaceKernel, prelude::*};
+use bevy_fluid::prelude::*;
 
 /// A column of rising puffs.
 #[derive(Component, Clone, Copy)]
@@ -25,39 +25,48 @@ pub(crate) struct Plume {
     puff: [f32; 2],
     /// How far the wind carries the column at its top, m.
     sway: f32,
+    /// How much longer than wide a puff is.
+    stretch: f32,
+    /// Flames that rise side by side; 0: one column.
+    tongues: u32,
 }
 
 impl Plume {
     pub(crate) const SMOKE: Self = Self {
         material: FluidMaterial {
-            medium: thin(FluidMaterial::SMOKE.medium, 0.02),
+            medium: thin(FluidMaterial::SMOKE.medium, 0.016),
             ..FluidMaterial::SMOKE
         },
-        puffs: 46,
-        particles: 26,
-        radius: 0.075,
+        puffs: 80,
+        particles: 20,
+        radius: 0.08,
         life: 4.0,
-        height: 1.45,
+        height: 1.4,
         foot: 0.03,
-        top: 0.22,
-        puff: [0.03, 0.2],
+        top: 0.2,
+        puff: [0.03, 0.19],
         sway: 0.12,
+        stretch: 1.0,
+        tongues: 0,
     };
 
     pub(crate) const FIRE: Self = Self {
         material: FluidMaterial {
-            medium: thin(FluidMaterial::FIRE.medium, 0.03),
+            medium: thin(FluidMaterial::FIRE.medium, 0.014),
+            thickness: Thickness::Accumulated { softness: 2.0 },
             ..FluidMaterial::FIRE
         },
-        puffs: 40,
-        particles: 22,
-        radius: 0.055,
-        life: 0.9,
-        height: 1.05,
-        foot: 0.17,
-        top: 0.02,
-        puff: [0.1, 0.03],
-        sway: 0.06,
+        puffs: 520,
+        particles: 4,
+        radius: 0.065,
+        life: 0.8,
+        height: 1.15,
+        foot: 0.15,
+        top: 0.0,
+        puff: [0.06, 0.012],
+        sway: 0.07,
+        stretch: 2.2,
+        tongues: 6,
     };
 
     /// The fluid: balls of one class that overlap many times over.
@@ -83,20 +92,31 @@ impl Plume {
             let spin = Quat::from_rotation_y(2.0 * age * (random(seed, 7) - 0.5) * TAU);
             (0..plume.particles).map(move |i| {
                 let key = seed.wrapping_mul(64).wrapping_add(i);
-                center + spin * in_ball(key) * size
+                let offset = spin * in_ball(key) * size;
+                center + vec3(offset.x, plume.stretch * offset.y, offset.z)
             })
         })
     }
 
     /// Where a puff is at an age from 0 to 1.
     fn center(&self, seed: u32, age: f32, seconds: f32) -> Vec3 {
-        // Some rise less far than others, so that the column thins out upwards.
-        let reach = 0.45 + 0.55 * random(seed, 1);
+        let tongue = (self.tongues > 0).then(|| seed.wrapping_mul(0x9E37_79B1) % self.tongues);
+        let phase = tongue.map_or(0.0, |tongue| 2.4 * tongue as f32);
+        // Some rise less far than others, so that the column thins out upwards; flames flicker.
+        let flicker = 1.0 - 0.35 * tongue.map_or(0.0, |_| (5.0 * seconds + phase).sin().powi(2));
+        let reach = (0.45 + 0.55 * random(seed, 1)) * flicker;
         let rise = age * reach;
-        let out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
-        let around = Vec2::from_angle(TAU * random(seed, 3)) * out;
+        let mut out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
+        let mut around = Vec2::ZERO;
+        if tongue.is_some() {
+            // A tongue leans inwards; it is widest somewhat above its foot, and pointed.
+            let wide = (rise / 0.15).min(1.0).sqrt() * (1.0 - rise);
+            around = Vec2::from_angle(phase) * 0.6 * self.foot * wide;
+            out *= 0.6 * wide;
+        }
+        around += Vec2::from_angle(TAU * random(seed, 3)) * out;
         // Waves that travel up the column carry all its puffs alike.
-        let wave = |speed: f32, phase: f32| (5.0 * rise - speed * seconds + phase).sin();
+        let wave = |speed: f32, shift: f32| (5.0 * rise - speed * seconds + shift + phase).sin();
         let sway = self.sway * rise * vec2(wave(1.7, 0.0) + 0.5 * wave(3.1, 1.0), wave(2.3, 2.0));
         let along = around + sway;
         vec3(along.x, 0.05 + self.height * rise, along.y)

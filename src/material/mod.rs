@@ -10,7 +10,7 @@ pub(crate) use check::plugin;
 use crate::medium::Medium;
 
 /// The optical properties of a fluid. Fluids of a view whose materials are equal form one body:
-/// they merge on screen.
+/// they merge on screen, unless one of another material lies between them.
 ///
 /// Values out of their range are said once in the log and drawn as the nearest that is in range.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -119,13 +119,13 @@ impl FluidMaterial {
         ..Self::WATER
     };
 
-    /// Fire: 0.2 m of it are as bright as a flame, and nearly clear.
+    /// Fire: 0.2 m of it are some times as bright as what is shown white, and nearly clear.
     pub const FIRE: Self = Self {
         refractive_index: 1.0,
         medium: Medium {
             absorption_density: 0.5,
             absorption_color: LinearRgba::BLACK,
-            emission: LinearRgba::rgb(60_000.0, 14_000.0, 1_600.0),
+            emission: LinearRgba::rgb(25_000.0, 5_500.0, 500.0),
             ..Medium::CLEAR
         },
         thickness: Thickness::SOFT,

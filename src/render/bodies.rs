@@ -21,6 +21,7 @@ use super::{
     composite::{CompositeKey, CompositePart},
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings},
     gpu_types::{GpuBody, GpuFluid},
+    grouping::{Group, Member, groups},
     layers::Layers,
     lighting::{Cubemaps, Lighting},
     pipelines::{BodyPipelines, Pipelines},
@@ -30,12 +31,9 @@ use super::{
     smooth::{SmoothGroups, SmoothSteps},
     support::{FluidSupport, Shortcuts},
 };
-use crate::{
-    material::FluidMaterial,
-    settings::{FluidDebugView, ScreenSpaceFluid},
-};
+use crate::settings::{FluidDebugView, ScreenSpaceFluid};
 
-/// The fluids of equal material that a view sees, and everything their passes need.
+/// Fluids of equal material that a view sees, and everything their passes need.
 pub struct Body {
     /// What is done for it this frame.
     pub plan: Plan,
@@ -208,24 +206,25 @@ pub(crate) fn prepare_bodies(
         };
 
         let mut bodies = Vec::new();
-        let visible: Vec<_> = fluids
+        let visible = fluids
             .iter()
             .filter(|(_, fluid)| fluid.visible && fluid.layers.intersects(&surroundings.layers))
-            .collect();
-        let groups = by_material(&visible);
-        let boxes: Vec<_> = groups
-            .iter()
-            .map(|(_, members)| bounds_of(members))
-            .collect();
+            .map(|(entity, fluid)| Member {
+                entity,
+                fluid,
+                bounds: fluid.bounds.transformed(&fluid.transform.affine()),
+            });
+        let groups = groups(visible, eye);
+        let boxes: Vec<_> = groups.iter().map(Group::bounds).collect();
         let several = groups.len() > 1;
         let mut behind = None;
         for i in far_to_near(eye, &boxes) {
-            let ((material, members), bounds) = (&groups[i], boxes[i]);
+            let (Group { material, members }, bounds) = (&groups[i], boxes[i]);
             let scissor = bounds.scissor(&clip_from_world, viewport);
             let count = |of: fn(&ExtractedFluid) -> u32| {
-                members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
+                members.iter().map(|member| of(member.fluid)).sum::<u32>()
             };
-            let radius = members.iter().map(|(_, f)| f.radius).fold(0.0, f32::max);
+            let radius = members.iter().map(|it| it.fluid.radius).fold(0.0, f32::max);
             let planned = plan(&PlanInput {
                 in_view: scissor.is_some(),
                 near_plane_cuts: bounds.near_plane_cuts(&clip_from_world),
@@ -275,7 +274,7 @@ pub(crate) fn prepare_bodies(
                 scissor,
                 fluids: members
                     .iter()
-                    .map(|(entity, fluid)| drawn(*entity, fluid, plan.interior))
+                    .map(|member| drawn(member, plan.interior))
                     .collect(),
                 steps,
                 pipelines,
@@ -310,33 +309,13 @@ pub(crate) fn prepare_bodies(
     uniforms.depth_ranges.write_buffer(&device, &queue);
 }
 
-type Members<'a> = Vec<(Entity, &'a ExtractedFluid)>;
-
-/// Fluids of equal material, in the order they first appear.
-fn by_material<'a>(fluids: &[(Entity, &'a ExtractedFluid)]) -> Vec<(FluidMaterial, Members<'a>)> {
-    let mut groups: Vec<(FluidMaterial, Members<'a>)> = Vec::new();
-    for &(entity, fluid) in fluids {
-        match groups.iter_mut().find(|(m, _)| *m == fluid.material) {
-            Some((_, members)) => members.push((entity, fluid)),
-            None => groups.push((fluid.material, vec![(entity, fluid)])),
-        }
-    }
-    groups
-}
-
-/// The box around all of a body.
-fn bounds_of(members: &Members) -> Bounds {
-    members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
-        bounds.union(fluid.bounds.transformed(&fluid.transform.affine()))
-    })
-}
-
 /// Splats lie in the order bulk, interior, spray.
-fn drawn(entity: Entity, fluid: &ExtractedFluid, interior: bool) -> BodyFluid {
+fn drawn(member: &Member, interior: bool) -> BodyFluid {
+    let fluid = member.fluid;
     let surface = fluid.bulk;
     let bulk = surface + fluid.interior;
     BodyFluid {
-        entity,
+        entity: member.entity,
         bulk: 0..if interior { bulk } else { surface },
         spray: bulk..bulk + fluid.spray,
     }

@@ -39,6 +39,11 @@ impl Bounds {
         0.5 * (self.min + self.max)
     }
 
+    /// Whether the boxes have a point in common.
+    pub(crate) fn touches(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// Whether nothing of `other` can hide anything of this box from `eye`: they lie apart along
     /// an axis, and the eye is on this one's side.
     pub(crate) fn before(&self, other: &Self, eye: Vec3) -> bool {

@@ -8,6 +8,7 @@ mod composite;
 mod exit;
 mod extract;
 mod gpu_types;
+mod grouping;
 mod layers;
 mod lighting;
 mod normals;

@@ -164,7 +164,7 @@ fn a_ball_of_particles_is_as_thick_as_the_ball() {
         ]
     };
     // Splats that just fill the ball leave it grainy; the wider they are the less.
-    for (softness, radius_scale, grain) in [(0.0, 1.24, 0.3), (1.0, 1.24, 0.5), (1.0, 2.5, 0.1)] {
+    for (softness, radius_scale, grain) in [(0.0, 1.24, 0.3), (1.0, 1.24, 0.35), (1.0, 2.5, 0.2)] {
         pour(
             &mut app,
             fluid(Thickness::Accumulated { softness }, radius_scale),
