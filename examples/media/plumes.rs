@@ -52,20 +52,20 @@ impl Plume {
 
     pub(crate) const FIRE: Self = Self {
         material: FluidMaterial {
-            medium: thin(FluidMaterial::FIRE.medium, 0.014),
-            thickness: Thickness::Accumulated { softness: 2.0 },
+            medium: thin(FluidMaterial::FIRE.medium, 0.0042),
+            thickness: Thickness::Accumulated { softness: 3.0 },
             ..FluidMaterial::FIRE
         },
-        puffs: 520,
+        puffs: 1000,
         particles: 4,
-        radius: 0.065,
+        radius: 0.062,
         life: 0.8,
-        height: 1.15,
-        foot: 0.15,
+        height: 1.05,
+        foot: 0.2,
         top: 0.0,
-        puff: [0.06, 0.012],
-        sway: 0.07,
-        stretch: 2.2,
+        puff: [0.045, 0.02],
+        sway: 0.1,
+        stretch: 3.0,
         tongues: 6,
     };
 
@@ -102,24 +102,29 @@ impl Plume {
     fn center(&self, seed: u32, age: f32, seconds: f32) -> Vec3 {
         let tongue = (self.tongues > 0).then(|| seed.wrapping_mul(0x9E37_79B1) % self.tongues);
         let phase = tongue.map_or(0.0, |tongue| 2.4 * tongue as f32);
-        // Some rise less far than others, so that the column thins out upwards; flames flicker.
-        let flicker = 1.0 - 0.35 * tongue.map_or(0.0, |_| (5.0 * seconds + phase).sin().powi(2));
-        let reach = (0.45 + 0.55 * random(seed, 1)) * flicker;
-        let rise = age * reach;
-        let mut out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
-        let mut around = Vec2::ZERO;
-        if tongue.is_some() {
-            // A tongue leans inwards; it is widest somewhat above its foot, and pointed.
-            let wide = (rise / 0.15).min(1.0).sqrt() * (1.0 - rise);
-            around = Vec2::from_angle(phase) * 0.6 * self.foot * wide;
-            out *= 0.6 * wide;
-        }
-        around += Vec2::from_angle(TAU * random(seed, 3)) * out;
+        // Some rise less far than others, so that the column thins out upwards.
+        let rise =
+            age * (0.5 + 0.5 * random(seed, 1)) * self.flicker(tongue, seconds + phase / 5.0);
+        let out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
+        let aside = Vec2::from_angle(TAU * random(seed, 3)) * out;
+        let around = match tongue {
+            None => aside,
+            Some(_) => {
+                // A flame is widest somewhat above its foot, and pointed.
+                let wide = (0.5 + 2.5 * rise).min(1.0) * (1.0 - rise).max(0.0);
+                (0.62 * self.foot * Vec2::from_angle(phase) + 0.5 * aside) * wide
+            }
+        };
         // Waves that travel up the column carry all its puffs alike.
         let wave = |speed: f32, shift: f32| (5.0 * rise - speed * seconds + shift + phase).sin();
         let sway = self.sway * rise * vec2(wave(1.7, 0.0) + 0.5 * wave(3.1, 1.0), wave(2.3, 2.0));
         let along = around + sway;
         vec3(along.x, 0.05 + self.height * rise, along.y)
+    }
+
+    /// How far a flame reaches at a time, of its full height.
+    fn flicker(&self, tongue: Option<u32>, seconds: f32) -> f32 {
+        1.0 - tongue.map_or(0.0, |_| 0.28 * (5.0 * seconds).sin().powi(2))
     }
 }
 
