@@ -28,18 +28,18 @@ pub use error::MediumError;
 #[reflect(Default, Clone, PartialEq)]
 pub struct Medium {
     /// How densely the medium is filled with matter that scatters light evenly to all sides
-    /// (α_D). Unit: 1/m, range 0.., default 0. Higher: more like milk.
+    /// (`α_D`). Unit: 1/m, range 0.., default 0. Higher: more like milk.
     pub scattering_density: f32,
-    /// The colour of the scattering matter in white light (C_D), linear, each channel 0..=1,
+    /// The colour of the scattering matter in white light (`C_D`), linear, each channel 0..=1,
     /// default white. What it does not scatter it absorbs.
     pub scattering_color: LinearRgba,
-    /// How densely the medium is filled with absorbing matter (α_A). Unit: 1/m, range 0..,
+    /// How densely the medium is filled with absorbing matter (`α_A`). Unit: 1/m, range 0..,
     /// default 0. Higher: light fades over a shorter way.
     pub absorption_density: f32,
-    /// The colour that the absorbing matter lets pass (C_A), linear, each channel 0..=1, default
+    /// The colour that the absorbing matter lets pass (`C_A`), linear, each channel 0..=1, default
     /// white (nothing is absorbed).
     pub absorption_color: LinearRgba,
-    /// What the medium itself sends (C_E). Unit: cd/m² per metre of depth, each channel 0..,
+    /// What the medium itself sends (`C_E`). Unit: cd/m² per metre of depth, each channel 0..,
     /// default black. Higher: brighter; with Bevy's default exposure white begins at some
     /// 1000 cd/m².
     pub emission: LinearRgba,
@@ -155,11 +155,6 @@ impl Add for Medium {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        // As much of each colour as there is matter of it.
-        let mixed = |[a, b]: [f32; 2], [of_a, of_b]: [LinearRgba; 2]| {
-            let share = if b > 0.0 { b / (a + b) } else { 0.0 };
-            (a + b, opaque(of_a.to_vec3().lerp(of_b.to_vec3(), share)))
-        };
         let (scattering_density, scattering_color) = mixed(
             [self.scattering_density, other.scattering_density],
             [self.scattering_color, other.scattering_color],
@@ -176,6 +171,12 @@ impl Add for Medium {
             emission: opaque(self.emission.to_vec3() + other.emission.to_vec3()),
         }
     }
+}
+
+/// Two kinds of matter: as much of each colour as there is matter of it.
+fn mixed([a, b]: [f32; 2], [of_a, of_b]: [LinearRgba; 2]) -> (f32, LinearRgba) {
+    let share = if b > 0.0 { b / (a + b) } else { 0.0 };
+    (a + b, opaque(of_a.to_vec3().lerp(of_b.to_vec3(), share)))
 }
 
 /// The length of a path that sends as much as `distance` does where `extinction` takes from it:
@@ -197,9 +198,13 @@ fn is_length(distance: f32) -> bool {
     distance.is_finite() && distance > 0.0
 }
 
-/// Because 0 · ∞ is not a number.
+/// Because 0 · ∞ is not a number; what is none itself counts as 0.
 fn finite(distance: f32) -> f32 {
-    distance.max(0.0).min(f32::MAX)
+    if distance > 0.0 {
+        distance.min(f32::MAX)
+    } else {
+        0.0
+    }
 }
 
 fn opaque(color: Vec3) -> LinearRgba {
