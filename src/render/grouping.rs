@@ -113,13 +113,12 @@ mod tests {
     fn sizes(fluids: &[(bool, f32)]) -> Vec<(bool, usize)> {
         let extracted: Vec<_> = fluids
             .iter()
-            .map(|(honey, _)| ExtractedFluid {
-                material: if *honey {
-                    FluidMaterial::HONEY
-                } else {
-                    FluidMaterial::WATER
-                },
-                ..default()
+            .map(|(honey, _)| {
+                let mut fluid = ExtractedFluid::default();
+                if *honey {
+                    fluid.material = FluidMaterial::HONEY;
+                }
+                fluid
             })
             .collect();
         let members = extracted.iter().zip(fluids).map(|(fluid, (_, z))| Member {
