@@ -35,7 +35,7 @@ fn main() -> AppExit {
     let stage = StagePlugins {
         size: uvec2(1600, 800),
         // Where a plume is follows from the time alone.
-        frames: 4,
+        frames: 5,
         time_step: Duration::from_secs_f32(0.7),
         title: "media · bevy_fluid".into(),
         ..default()

@@ -52,7 +52,7 @@ impl Plume {
 
     pub(crate) const FIRE: Self = Self {
         material: FluidMaterial {
-            medium: thin(FluidMaterial::FIRE.medium, 0.0042),
+            medium: thin(FluidMaterial::FIRE.medium, 0.0075),
             thickness: Thickness::Accumulated { softness: 3.0 },
             ..FluidMaterial::FIRE
         },
@@ -60,13 +60,13 @@ impl Plume {
         particles: 4,
         radius: 0.062,
         life: 0.8,
-        height: 1.05,
+        height: 1.25,
         foot: 0.2,
         top: 0.0,
-        puff: [0.045, 0.02],
+        puff: [0.05, 0.02],
         sway: 0.1,
         stretch: 3.0,
-        tongues: 6,
+        tongues: 5,
     };
 
     /// The fluid: balls of one class that overlap many times over.
@@ -104,15 +104,15 @@ impl Plume {
         let phase = tongue.map_or(0.0, |tongue| 2.4 * tongue as f32);
         // Some rise less far than others, so that the column thins out upwards.
         let rise =
-            age * (0.5 + 0.5 * random(seed, 1)) * self.flicker(tongue, seconds + phase / 5.0);
+            age * (0.45 + 0.55 * random(seed, 1)) * self.flicker(tongue, seconds + phase / 5.0);
         let out = (self.foot + (self.top - self.foot) * rise) * random(seed, 2).sqrt();
         let aside = Vec2::from_angle(TAU * random(seed, 3)) * out;
         let around = match tongue {
             None => aside,
             Some(_) => {
                 // A flame is widest somewhat above its foot, and pointed.
-                let wide = (0.5 + 2.5 * rise).min(1.0) * (1.0 - rise).max(0.0);
-                (0.62 * self.foot * Vec2::from_angle(phase) + 0.5 * aside) * wide
+                let wide = (0.55 + 2.25 * rise).min(1.0) * (1.0 - rise).max(0.0).powf(1.5);
+                (0.45 * self.foot * Vec2::from_angle(phase) + 0.6 * aside) * wide
             }
         };
         // Waves that travel up the column carry all its puffs alike.
@@ -124,7 +124,7 @@ impl Plume {
 
     /// How far a flame reaches at a time, of its full height.
     fn flicker(&self, tongue: Option<u32>, seconds: f32) -> f32 {
-        1.0 - tongue.map_or(0.0, |_| 0.28 * (5.0 * seconds).sin().powi(2))
+        1.0 - tongue.map_or(0.0, |_| 0.25 * (5.0 * seconds).sin().powi(2))
     }
 }
 

@@ -61,8 +61,11 @@ fn an_opaque_medium_needs_neither_back_layers_nor_search() {
     let [(quick, plan), (whole, traced)] = both(FluidMaterial::MILK);
     assert!(plan.opaque && !plan.backs() && plan.interfaces == 1);
     assert!(!traced.opaque && traced.backs() && traced.interfaces == 4);
-    // A particle of milk of 8 cm lets nothing through.
-    assert_eq!(share(&quick, &whole, 1), 0.0);
+    // A particle of milk of 8 cm lets nothing through. Only where a search finds the liquid thinner
+    // than can be told, at a rim, does a pixel in ten thousand.
+    let differ = share(&quick, &whole, 1);
+    println!("opaque: {differ} of the pixels differ by more than 1/255");
+    assert!(differ < 3e-4, "{differ}");
     let white = quick.pixels().filter(|p| p.0[..3].iter().all(|&c| c > 100));
     assert!(white.count() > 1000, "the milk is in the picture");
 }
