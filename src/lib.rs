@@ -48,8 +48,8 @@ pub mod shape;
 use bevy::prelude::*;
 
 pub use crate::{
-    material::FluidMaterial,
-    medium::Medium,
+    material::{FluidMaterial, MaterialError, Thickness},
+    medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
     render::LayerBlending,
     schedule::FluidSystems,
@@ -64,15 +64,28 @@ pub use crate::{
 pub mod prelude {
     pub use crate::{
         FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ScreenSpaceFluid,
-        SurfaceKernel,
+        SurfaceKernel, Thickness,
     };
 }
 
 /// Shapes and draws particle fluids.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct FluidPlugin {
     /// How the depth layers are drawn; leave it at its default unless you test adapters.
     pub layer_blending: LayerBlending,
+    /// Whether work is left out that a material makes needless (see [`render::plan`]): the
+    /// search in a fluid of refractive index 1, what is behind an opaque one, the terms that a
+    /// medium lacks. Default: true; leave it there unless you test that nothing is missed.
+    pub shortcuts: bool,
+}
+
+impl Default for FluidPlugin {
+    fn default() -> Self {
+        Self {
+            layer_blending: LayerBlending::Auto,
+            shortcuts: true,
+        }
+    }
 }
 
 impl Plugin for FluidPlugin {
@@ -80,8 +93,10 @@ impl Plugin for FluidPlugin {
         app.add_plugins((
             schedule::plugin,
             particles::plugin,
+            material::plugin,
             render::FluidRenderPlugin {
                 layer_blending: self.layer_blending,
+                shortcuts: self.shortcuts,
             },
         ));
     }

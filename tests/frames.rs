@@ -360,6 +360,7 @@ fn fluids_of_different_materials_are_bodies_of_their_own() {
         medium: Medium {
             absorption_density: 5.0,
             absorption_color: LinearRgba::BLUE,
+            ..Medium::CLEAR
         },
         ..default()
     };

@@ -52,6 +52,7 @@ fn tinted(index: f64) -> FluidMaterial {
         medium: Medium {
             absorption_density: 1.0,
             absorption_color: LinearRgba::rgb(0.0, 0.5, 1.0),
+            ..Medium::CLEAR
         },
         ..clear(index)
     }

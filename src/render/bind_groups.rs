@@ -85,6 +85,10 @@ pub(crate) fn prepare_body_bind_groups(
             .scene_color
             .as_ref()
             .map(|copy| copy.default_view.clone());
+        let scene_before = view
+            .scene_before
+            .as_ref()
+            .map(|copy| copy.default_view.clone());
         for body in &mut view.bodies {
             body.groups.common = sources.common(&scene_depth);
             body.groups.merge = sources.merge(body);
@@ -103,7 +107,10 @@ pub(crate) fn prepare_body_bind_groups(
             body.groups.spray_layers = Some(sources.layer(&body.layers.spray.default_view));
             body.groups.refract = Some(sources.refract(body));
             body.groups.composite = match &scene_color {
-                Some(color) => Some(sources.composite(body, color)),
+                Some(color) => {
+                    let before = scene_before.as_ref().unwrap_or(color);
+                    Some(sources.composite(body, color, before))
+                }
                 None => sources.debug(body),
             };
             body.mark_ready(&sources.cache, scene_depth_ready);
@@ -139,9 +146,9 @@ impl Sources<'_> {
         self.normals.bind_group(&self.device, &self.cache, view)
     }
 
-    /// The environment map; white where there is none, which the uniform's intensity of 0 hides.
-    fn environment(&self, body: &Body) -> &GpuImage {
-        body.environment
+    /// A cubemap; white where there is none, which the uniform's intensity of 0 hides.
+    fn cube(&self, image: Option<AssetId<Image>>) -> &GpuImage {
+        image
             .and_then(|id| self.images.get(id))
             .unwrap_or(&self.fallback.cube)
     }
@@ -153,25 +160,36 @@ impl Sources<'_> {
             "fluid_refract",
             &layout,
             &BindGroupEntries::sequential((
-                &self.environment(body).texture_view,
+                &self.cube(body.cubemaps.environment).texture_view,
                 &self.placeholders.linear,
                 layers.bulk_view(),
                 &layers.bulk_normals.default_view,
                 &layers.spray.default_view,
                 &layers.spray_normals.default_view,
                 &self.placeholders.nearest,
+                &self.cube(body.cubemaps.diffuse).texture_view,
+                &layers
+                    .thickness
+                    .as_ref()
+                    .unwrap_or(&self.placeholders.layers)
+                    .default_view,
             )),
         )
     }
 
-    fn composite(&self, body: &Body, scene_color: &TextureView) -> BindGroup {
+    fn composite(
+        &self,
+        body: &Body,
+        scene_color: &TextureView,
+        scene_before: &TextureView,
+    ) -> BindGroup {
         let layout = self.cache.get_bind_group_layout(&self.composite.layout);
         let layers = &body.layers;
         self.device.create_bind_group(
             "fluid_composite",
             &layout,
             &BindGroupEntries::sequential((
-                &self.environment(body).texture_view,
+                &self.cube(body.cubemaps.environment).texture_view,
                 &self.placeholders.linear,
                 &layers.radiance.default_view,
                 &layers.transmission.default_view,
@@ -180,6 +198,7 @@ impl Sources<'_> {
                 &layers.spray.default_view,
                 scene_color,
                 &self.placeholders.linear,
+                scene_before,
             )),
         )
     }

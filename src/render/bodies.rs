@@ -18,24 +18,23 @@ use bevy::{
 };
 
 use super::{
-    bounds::Bounds,
-    composite::CompositeKey,
+    bounds::{Bounds, far_to_near},
+    composite::{CompositeKey, CompositePart},
     extract::{ExtractedFluid, FluidLights, GpuSplats, ViewSurroundings, mean_scale},
     gpu_types::{GpuBody, GpuFluid},
+    grouping::{Group, Member, groups},
     layers::Layers,
+    lighting::{Cubemaps, Lighting},
     pipelines::{BodyPipelines, Pipelines},
     plan::{Plan, PlanInput, plan},
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
     smooth::{SmoothGroups, SmoothSteps},
-    support::FluidSupport,
+    support::{FluidSupport, Shortcuts},
 };
-use crate::{
-    material::FluidMaterial,
-    settings::{FluidDebugView, ScreenSpaceFluid},
-};
+use crate::settings::{FluidDebugView, ScreenSpaceFluid};
 
-/// The fluids of equal material that a view sees, and everything their passes need.
+/// Fluids of equal material that a view sees, and everything their passes need.
 pub struct Body {
     /// What is done for it this frame.
     pub plan: Plan,
@@ -49,7 +48,7 @@ pub struct Body {
     pub(crate) groups: BodyGroups,
     pub(crate) debug: bool,
     pub(crate) depth_range_offset: u32,
-    pub(crate) environment: Option<AssetId<Image>>,
+    pub(crate) cubemaps: Cubemaps,
     view_offset: u32,
     body_offset: u32,
     ready: bool,
@@ -98,7 +97,10 @@ pub struct ViewBodies {
     /// From far to near.
     pub bodies: Vec<Body>,
     pub(crate) viewport: URect,
+    /// The colour that a body is painted over; none in debug views.
     pub(crate) scene_color: Option<CachedTexture>,
+    /// The colour before any body is painted, where there are several.
+    pub(crate) scene_before: Option<CachedTexture>,
     pub(crate) scene_depth: CachedTexture,
     pub(crate) scene_depth_group: Option<BindGroup>,
     pub(crate) multisampled: bool,
@@ -130,6 +132,7 @@ pub(crate) fn prepare_fluids(
     for (fluid, mut gpu) in &mut fluids {
         gpu.offset = uniforms.fluids.push(&GpuFluid {
             world_from_local: fluid.transform.to_matrix(),
+            radius: fluid.local_radius,
         });
     }
     uniforms.fluids.write_buffer(&device, &queue);
@@ -155,6 +158,7 @@ pub(crate) fn prepare_bodies(
     images: Res<RenderAssets<GpuImage>>,
     clear_color: Res<ClearColor>,
     support: Res<FluidSupport>,
+    shortcuts: Res<Shortcuts>,
     placeholders: Res<Placeholders>,
     mut pipelines: Pipelines,
     mut textures: ResMut<TextureCache>,
@@ -189,64 +193,84 @@ pub(crate) fn prepare_bodies(
             Some(clip_from_world) => clip_from_world * Mat4::from_translation(eye),
             None => view.clip_from_view * Mat4::from(view_from_eye),
         };
+        // Orthographic: all rays come from far behind.
+        let rays_from = if view.clip_from_view.w_axis.w == 1.0 {
+            view.world_from_view.back() * 1e6
+        } else {
+            Vec3::ZERO
+        };
+
+        let lighting = Lighting {
+            surroundings,
+            lights: &lights,
+            images: &images,
+            clear_color: match camera.clear_color {
+                ClearColorConfig::Custom(color) => color,
+                _ => clear_color.0,
+            },
+            exposure: camera.exposure,
+        };
 
         let mut bodies = Vec::new();
-        let visible: Vec<_> = fluids
+        let visible = fluids
             .iter()
             .filter(|(_, fluid)| fluid.visible && fluid.layers.intersects(&surroundings.layers))
-            .collect();
-        for (material, members) in by_material(&visible) {
-            let bounds = members.iter().fold(Bounds::EMPTY, |bounds, (_, fluid)| {
+            .map(|(entity, fluid)| {
                 let mut eye_from_local = fluid.transform.affine();
                 eye_from_local.translation -= Vec3A::from(eye);
-                bounds.union(fluid.bounds.transformed(&eye_from_local))
+                Member {
+                    entity,
+                    fluid,
+                    bounds: fluid.bounds.transformed(&eye_from_local),
+                }
             });
+        let groups = groups(visible, rays_from);
+        let boxes: Vec<_> = groups.iter().map(Group::bounds).collect();
+        let several = groups.len() > 1;
+        let mut behind = None;
+        for i in far_to_near(rays_from, &boxes) {
+            let (Group { material, members }, bounds) = (&groups[i], boxes[i]);
             let scissor = bounds.scissor(&clip_from_eye, viewport);
             let count = |of: fn(&ExtractedFluid) -> u32| {
-                members.iter().map(|(_, fluid)| of(fluid)).sum::<u32>()
+                members.iter().map(|member| of(member.fluid)).sum::<u32>()
             };
+            let radius = members.iter().map(|it| it.fluid.radius).fold(0.0, f32::max);
             let planned = plan(&PlanInput {
                 in_view: scissor.is_some(),
                 near_plane_cuts: bounds.near_plane_cuts(&clip_from_eye),
                 bulk: count(|fluid| fluid.bulk),
                 interior: count(|fluid| fluid.interior),
                 spray: count(|fluid| fluid.spray),
-                refractive_index: material.refractive_index,
+                radius,
+                material: *material,
+                shortcuts: shortcuts.0,
                 settings: *settings,
             });
             let (Some(plan), Some(scissor)) = (planned, scissor) else {
                 continue;
             };
-            let radius = members.iter().map(|(_, f)| f.radius).fold(0.0, f32::max);
             let steps = SmoothSteps::new(&plan.smoothing);
-            let map = surroundings
-                .map
-                .as_ref()
-                .filter(|map| is_cubemap(&images, map.image.id()));
             // A scaled camera has other metres than the world.
             let view_scale = mean_scale(&view_from_eye.matrix3);
-            let mut body = GpuBody::new(&material, radius * view_scale, settings, &plan.smoothing);
-            body.extinction /= view_scale;
-            body.lights = lights.lights;
-            body.light_count = lights.count;
-            if let Some(map) = map {
-                // Cubemaps are left-handed.
-                body.environment_from_world = Mat3::from_diagonal(vec3(1.0, 1.0, -1.0))
-                    * Mat3::from_quat(map.rotation.inverse());
-                body.environment_intensity = map.intensity * camera.exposure;
+            let mut body = GpuBody::new(material, radius * view_scale, settings, &plan.smoothing);
+            let cubemaps = lighting.shine_on(&mut body, material.medium.emission);
+            body.scale_lengths(view_scale);
+            if let Some(center) = behind.replace(bounds.center()) {
+                let center = view_from_eye.transform_point3(center);
+                body.behind = center.extend(1.0);
             }
-            body.clear_color = match camera.clear_color {
-                ClearColorConfig::Custom(color) => color,
-                _ => clear_color.0,
-            }
-            .to_linear()
-            .to_vec3();
             let composite = CompositeKey {
                 debug_view: debug_view.copied(),
                 format: view.target_format,
                 samples: msaa.samples(),
+                part: if debug_view.is_none() && (several || plan.index_one) {
+                    CompositePart::Light
+                } else {
+                    CompositePart::Whole
+                },
+                several,
             };
-            let pipelines = pipelines.of(&plan, &steps, settings, support.max_blend, composite);
+            let pipelines = pipelines.of(&plan, &steps, settings, &support, composite);
             let layers = Layers::new(
                 &mut textures,
                 &device,
@@ -257,40 +281,38 @@ pub(crate) fn prepare_bodies(
                 &placeholders.layers,
             );
             let depths = view_depths(&bounds, &view_from_eye);
-            bodies.push((
-                bounds.center().length_squared(),
-                Body {
-                    plan,
-                    layers,
-                    scissor,
-                    fluids: members
-                        .iter()
-                        .map(|(entity, fluid)| drawn(*entity, fluid, plan.interior))
-                        .collect(),
-                    steps,
-                    pipelines,
-                    groups: BodyGroups::default(),
-                    debug: debug_view.is_some(),
-                    depth_range_offset: uniforms.depth_ranges.push(&depths),
-                    environment: map.map(|map| map.image.id()),
-                    view_offset: offset.offset,
-                    body_offset: uniforms.bodies.push(&body),
-                    ready: false,
-                },
-            ));
+            bodies.push(Body {
+                plan,
+                layers,
+                scissor,
+                fluids: members
+                    .iter()
+                    .map(|member| drawn(member, plan.interior))
+                    .collect(),
+                steps,
+                pipelines,
+                groups: BodyGroups::default(),
+                debug: debug_view.is_some(),
+                depth_range_offset: uniforms.depth_ranges.push(&depths),
+                cubemaps,
+                view_offset: offset.offset,
+                body_offset: uniforms.bodies.push(&body),
+                ready: false,
+            });
         }
         if bodies.is_empty() {
             continue;
         }
-        bodies.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         let mut texture =
             |label, format| view_texture(&mut textures, &device, label, target_size, format);
         commands.entity(entity).insert(ViewBodies {
-            bodies: bodies.into_iter().map(|(_, body)| body).collect(),
+            bodies,
             viewport: URect::from_corners(viewport.xy(), viewport.xy() + viewport.zw()),
             scene_color: debug_view
                 .is_none()
                 .then(|| texture("fluid_scene_color", view.target_format)),
+            scene_before: (several && debug_view.is_none())
+                .then(|| texture("fluid_scene_before", view.target_format)),
             scene_depth: texture("fluid_scene_depth", SCENE_DEPTH_FORMAT),
             scene_depth_group: None,
             multisampled: msaa.samples() > 1,
@@ -300,35 +322,16 @@ pub(crate) fn prepare_bodies(
     uniforms.depth_ranges.write_buffer(&device, &queue);
 }
 
-type Members<'a> = Vec<(Entity, &'a ExtractedFluid)>;
-
-/// Fluids of equal material, in the order they first appear.
-fn by_material<'a>(fluids: &[(Entity, &'a ExtractedFluid)]) -> Vec<(FluidMaterial, Members<'a>)> {
-    let mut groups: Vec<(FluidMaterial, Members<'a>)> = Vec::new();
-    for &(entity, fluid) in fluids {
-        match groups.iter_mut().find(|(m, _)| *m == fluid.material) {
-            Some((_, members)) => members.push((entity, fluid)),
-            None => groups.push((fluid.material, vec![(entity, fluid)])),
-        }
-    }
-    groups
-}
-
 /// Splats lie in the order bulk, interior, spray.
-fn drawn(entity: Entity, fluid: &ExtractedFluid, interior: bool) -> BodyFluid {
+fn drawn(member: &Member, interior: bool) -> BodyFluid {
+    let fluid = member.fluid;
     let surface = fluid.bulk;
     let bulk = surface + fluid.interior;
     BodyFluid {
-        entity,
+        entity: member.entity,
         bulk: 0..if interior { bulk } else { surface },
         spray: bulk..bulk + fluid.spray,
     }
-}
-
-fn is_cubemap(images: &RenderAssets<GpuImage>, id: AssetId<Image>) -> bool {
-    images
-        .get(id)
-        .is_some_and(|image| image.texture.depth_or_array_layers() == 6)
 }
 
 /// Nearest and farthest depth of the box, for debug views.

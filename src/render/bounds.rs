@@ -39,6 +39,41 @@ impl Bounds {
         0.5 * (self.min + self.max)
     }
 
+    /// Whether the boxes have a point in common.
+    pub(crate) fn touches(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
+    /// Whether nothing of `other` can hide anything of this box from `eye`: they lie apart along
+    /// an axis, and the eye is on this one's side.
+    pub(crate) fn before(&self, other: &Self, eye: Vec3) -> bool {
+        (0..3).any(|axis| {
+            let above = self.min[axis] >= other.max[axis] && eye[axis] >= other.max[axis];
+            let below = self.max[axis] <= other.min[axis] && eye[axis] <= other.min[axis];
+            above || below
+        })
+    }
+}
+
+/// The order in which boxes are painted: each after all that it may hide, as far as boxes tell;
+/// where they overlap, or hide each other in a ring, the farther centre first.
+pub(crate) fn far_to_near(eye: Vec3, boxes: &[Bounds]) -> Vec<usize> {
+    let distance = |&i: &usize| boxes[i].center().distance_squared(eye);
+    let mut left: Vec<usize> = (0..boxes.len()).collect();
+    left.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    let mut order = Vec::with_capacity(boxes.len());
+    while !left.is_empty() {
+        let hides_none = |&i: &usize| {
+            let mut others = left.iter().filter(|&&other| other != i);
+            !others.any(|&other| boxes[i].before(&boxes[other], eye))
+        };
+        let next = left.iter().position(hides_none).unwrap_or(0);
+        order.push(left.remove(next));
+    }
+    order
+}
+
+impl Bounds {
     fn corners(&self) -> [Vec3; 8] {
         core::array::from_fn(|i| {
             let pick = |axis: usize| {
@@ -144,6 +179,37 @@ mod tests {
         assert!(rect.contains(uvec2(250, 150)));
         assert!(rect.min.x > 220 && rect.max.x < 280, "{rect:?}");
         assert_eq!(rect.min.x - 200, 300 - rect.max.x);
+    }
+
+    #[test]
+    fn boxes_apart_are_painted_by_the_plane_between_them() {
+        let pool = Bounds {
+            min: vec3(-5.0, -1.0, -5.0),
+            max: vec3(5.0, 0.0, 5.0),
+        };
+        let smoke = Bounds {
+            min: vec3(-1.0, 0.5, -5.0),
+            max: vec3(1.0, 2.0, -3.0),
+        };
+        // Seen from above the smoke is before the pool, though its centre is farther.
+        let above = vec3(0.0, 3.0, 8.0);
+        assert!(smoke.center().distance(above) > pool.center().distance(above));
+        assert_eq!(far_to_near(above, &[smoke, pool]), [1, 0]);
+        assert_eq!(far_to_near(above, &[pool, smoke]), [0, 1]);
+        // From under the water it is behind.
+        let below = vec3(0.0, -3.0, -4.0);
+        assert_eq!(far_to_near(below, &[smoke, pool]), [0, 1]);
+    }
+
+    #[test]
+    fn boxes_that_overlap_are_painted_by_their_centres() {
+        let at = |z: f32| Bounds {
+            min: vec3(-1.0, -1.0, z - 1.0),
+            max: vec3(1.0, 1.0, z + 1.0),
+        };
+        let boxes = [at(-5.0), at(-6.0), at(-4.5), at(-9.0)];
+        assert_eq!(far_to_near(Vec3::ZERO, &boxes), [3, 1, 0, 2]);
+        assert!(far_to_near(Vec3::ZERO, &[]).is_empty());
     }
 
     #[test]

@@ -38,16 +38,18 @@ impl ExtractComponent for ScreenSpaceFluid {
         Option<&'static EnvironmentMapLight>,
         Option<&'static Skybox>,
         Option<&'static RenderLayers>,
+        Option<&'static AmbientLight>,
     );
     type QueryFilter = With<Camera3d>;
     type Out = (Self, ViewSurroundings);
 
     fn extract_component(
-        (settings, light, skybox, layers): QueryItem<'_, '_, Self::QueryData>,
+        (settings, light, skybox, layers, ambient): QueryItem<'_, '_, Self::QueryData>,
     ) -> Option<Self::Out> {
         let map = light
             .map(|light| EnvironmentMap {
                 image: light.specular_map.clone(),
+                diffuse: Some(light.diffuse_map.clone()),
                 intensity: light.intensity,
                 rotation: light.rotation,
             })
@@ -55,6 +57,8 @@ impl ExtractComponent for ScreenSpaceFluid {
                 let skybox = skybox?;
                 Some(EnvironmentMap {
                     image: skybox.image.clone()?,
+                    // As meshes are, the medium is not lit by it.
+                    diffuse: None,
                     intensity: skybox.brightness,
                     rotation: skybox.rotation,
                 })
@@ -62,6 +66,7 @@ impl ExtractComponent for ScreenSpaceFluid {
         let surroundings = ViewSurroundings {
             map,
             layers: layers.cloned().unwrap_or_default(),
+            ambient: ambient.map(|light| luminance(light.color, light.brightness)),
         };
         Some((*settings, surroundings))
     }
@@ -85,6 +90,8 @@ impl ExtractComponent for FluidDebugView {
 #[derive(Clone)]
 pub(crate) struct EnvironmentMap {
     pub(crate) image: Handle<Image>,
+    /// The same light by the direction that a matte surface faces.
+    pub(crate) diffuse: Option<Handle<Image>>,
     /// cd/m² per texel value.
     pub(crate) intensity: f32,
     pub(crate) rotation: Quat,
@@ -96,28 +103,55 @@ pub(crate) struct EnvironmentMap {
 pub struct ViewSurroundings {
     pub(crate) map: Option<EnvironmentMap>,
     pub(crate) layers: RenderLayers,
+    /// The camera's own ambient light, cd/m².
+    pub(crate) ambient: Option<Vec3>,
 }
 
-/// The scene's directional lights.
+/// The scene's lights that come from far away.
 #[derive(Resource, Default)]
 pub(crate) struct FluidLights {
     pub(crate) lights: [GpuDirectionalLight; MAX_LIGHTS],
     pub(crate) count: u32,
+    /// Mean over all directions of all directional lights, cd/m².
+    mean: Vec3,
+    /// Where a camera has none of its own, cd/m².
+    ambient: Vec3,
+}
+
+impl FluidLights {
+    /// The mean luminance over all directions, without what environment maps add; `ambient` is
+    /// the camera's own.
+    pub(crate) fn even(&self, ambient: Option<Vec3>) -> Vec3 {
+        self.mean + ambient.unwrap_or(self.ambient)
+    }
+}
+
+fn luminance(color: Color, brightness: f32) -> Vec3 {
+    color.to_linear().to_vec3() * brightness
 }
 
 pub(crate) fn extract_lights(
     lights: Extract<Query<(&DirectionalLight, &GlobalTransform, &ViewVisibility)>>,
+    ambient: Extract<Option<Res<GlobalAmbientLight>>>,
     mut extracted: ResMut<FluidLights>,
 ) {
     extracted.count = 0;
+    extracted.mean = Vec3::ZERO;
+    extracted.ambient = ambient
+        .as_ref()
+        .map_or(Vec3::ZERO, |light| luminance(light.color, light.brightness));
     let visible = lights.iter().filter(|(_, _, visibility)| visibility.get());
-    for (slot, (light, transform, _)) in (0..MAX_LIGHTS).zip(visible) {
-        let color = light.color.to_linear().to_vec3();
-        extracted.lights[slot] = GpuDirectionalLight {
-            direction_to_light: transform.back().into(),
-            illuminance: color * light.illuminance,
-        };
-        extracted.count += 1;
+    for (slot, (light, transform, _)) in visible.enumerate() {
+        let illuminance = luminance(light.color, light.illuminance);
+        // The light of one direction, spread over the sphere.
+        extracted.mean += illuminance / (4.0 * core::f32::consts::PI);
+        if slot < MAX_LIGHTS {
+            extracted.lights[slot] = GpuDirectionalLight {
+                direction_to_light: transform.back().into(),
+                illuminance,
+            };
+            extracted.count += 1;
+        }
     }
 }
 
@@ -131,6 +165,8 @@ pub struct ExtractedFluid {
     pub(crate) visible: bool,
     /// In world units.
     pub(crate) radius: f32,
+    /// In the fluid's own.
+    pub(crate) local_radius: f32,
     pub(crate) bounds: Bounds,
     pub(crate) bulk: u32,
     pub(crate) interior: u32,
@@ -191,8 +227,9 @@ pub(crate) fn extract_fluids(
             None => new.insert(ExtractedFluid::default()),
         };
         fluid.transform = *transform;
-        fluid.material = material.copied().unwrap_or_default();
+        fluid.material = material.copied().unwrap_or_default().clamped();
         fluid.visible = visibility.get();
+        fluid.local_radius = particles.radius;
         fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);
         fluid
             .layers

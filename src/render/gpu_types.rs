@@ -4,7 +4,7 @@ use bevy::{prelude::*, render::render_resource::ShaderType};
 
 use super::smooth::window_radii;
 use crate::{
-    material::FluidMaterial,
+    material::{FluidMaterial, Thickness},
     settings::{ScreenSpaceFluid, Search, Smoothing},
 };
 
@@ -15,6 +15,7 @@ pub(crate) const MAX_LIGHTS: usize = 4;
 #[derive(Clone, Copy, Default, ShaderType)]
 pub(crate) struct GpuFluid {
     pub(crate) world_from_local: Mat4,
+    pub(crate) radius: f32,
 }
 
 /// A light that gives highlights.
@@ -42,6 +43,12 @@ pub(crate) struct GpuBody {
     pub(crate) flow_step: f32,
     pub(crate) coarse_samples: u32,
     pub(crate) contact: f32,
+    pub(crate) scattering: Vec3,
+    pub(crate) emission: Vec3,
+    pub(crate) even_light: Vec3,
+    pub(crate) diffuse_intensity: f32,
+    pub(crate) softness: f32,
+    pub(crate) behind: Vec4,
 }
 
 /// For methods that know no bound.
@@ -49,7 +56,7 @@ const UNBOUND: f32 = 1e6;
 
 impl GpuBody {
     /// A body of particles of `radius` (world units); values that make no sense give way to safe
-    /// ones. Lights and surroundings are left dark.
+    /// ones. Lights, surroundings and emission are left dark.
     pub(crate) fn new(
         material: &FluidMaterial,
         radius: f32,
@@ -82,6 +89,11 @@ impl GpuBody {
         };
         Self {
             extinction: material.medium.extinction(),
+            scattering: material.medium.scattered(),
+            softness: match material.thickness {
+                Thickness::Layers => 0.0,
+                Thickness::Accumulated { softness } => softness,
+            },
             refractive_index: positive(material.refractive_index, 1.0).clamp(0.2, 5.0),
             perceptual_roughness: positive(material.perceptual_roughness, 0.1).clamp(0.03, 1.0),
             radius,
@@ -96,6 +108,13 @@ impl GpuBody {
             contact: positive(settings.contact, 0.0).min(8.0) * radius,
             ..default()
         }
+    }
+
+    /// For a view whose metres are `view_scale` times the world's: what happens in a metre.
+    pub(crate) fn scale_lengths(&mut self, view_scale: f32) {
+        self.extinction /= view_scale;
+        self.scattering /= view_scale;
+        self.emission /= view_scale;
     }
 }
 

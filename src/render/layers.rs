@@ -47,6 +47,8 @@ pub struct Layers {
     pub(crate) radiance: CachedTexture,
     pub(crate) transmission: CachedTexture,
     pub(crate) exits: CachedTexture,
+    /// The way through all particles, where it is summed up.
+    pub(crate) thickness: Option<CachedTexture>,
     /// Front and back, for adapters that cannot blend.
     pub(crate) depths: Option<[CachedTexture; 2]>,
 }
@@ -63,14 +65,17 @@ impl Layers {
     ) -> Self {
         let mut texture = |label, format| view_texture(cache, device, label, size, format);
         let mut class = |there: bool, label, normals| {
-            if there {
-                (
-                    texture(label, LAYER_FORMAT),
-                    texture(normals, NORMAL_FORMAT),
-                )
-            } else {
-                (placeholder.clone(), placeholder.clone())
-            }
+            let mut wanted = |there, label, format| {
+                if there {
+                    texture(label, format)
+                } else {
+                    placeholder.clone()
+                }
+            };
+            (
+                wanted(there, label, LAYER_FORMAT),
+                wanted(there && !plan.accumulated, normals, NORMAL_FORMAT),
+            )
         };
         let (bulk, bulk_normals) = class(plan.bulk, "fluid_bulk_layers", "fluid_bulk_normals");
         let (spray, spray_normals) = class(plan.spray, "fluid_spray_layers", "fluid_spray_normals");
@@ -93,6 +98,9 @@ impl Layers {
             radiance: texture("fluid_radiance", LIGHT_FORMAT),
             transmission: texture("fluid_transmission", LIGHT_FORMAT),
             exits: texture("fluid_exits", EXIT_FORMAT),
+            thickness: plan
+                .accumulated
+                .then(|| texture("fluid_thickness", support.thickness_format)),
             depths: (!support.max_blend).then(|| {
                 [
                     texture("fluid_front_depth", DEPTH_FORMAT),
@@ -135,6 +143,11 @@ impl Layers {
     /// Exit rays and flags, as `pack_exit` in `refract.wgsl` lays them out.
     pub fn exits(&self) -> &Texture {
         &self.exits.texture
+    }
+
+    /// The way through all particles in m, where it is summed up.
+    pub fn thickness(&self) -> Option<&Texture> {
+        self.thickness.as_ref().map(|cached| &cached.texture)
     }
 
     pub(crate) fn bulk_view(&self) -> &TextureView {

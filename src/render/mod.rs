@@ -8,7 +8,9 @@ mod composite;
 mod exit;
 mod extract;
 mod gpu_types;
+mod grouping;
 mod layers;
+mod lighting;
 mod normals;
 mod pipelines;
 mod plan;
@@ -22,6 +24,7 @@ mod splat;
 mod support;
 #[cfg(test)]
 mod tests;
+mod thickness;
 
 use bevy::{
     asset::embedded_asset,
@@ -45,7 +48,7 @@ pub use self::{
     extract::{ExtractedFluid, GpuSplats, ViewSurroundings},
     gpu_types::SearchStatus,
     layers::Layers,
-    plan::{Plan, PlanInput, plan},
+    plan::{MediumTerms, Plan, PlanInput, plan},
     support::LayerBlending,
 };
 use crate::{
@@ -60,6 +63,8 @@ pub enum FluidPasses {
     SceneDepth,
     /// Splats to layers.
     Splat,
+    /// The way through each particle is summed up, where a material asks for it.
+    Thickness,
     /// The bulk's layers are smoothed.
     Smooth,
     /// Normals that smoothing has not written.
@@ -73,6 +78,7 @@ pub enum FluidPasses {
 /// Draws fluids. Added by [`FluidPlugin`](crate::FluidPlugin).
 pub(crate) struct FluidRenderPlugin {
     pub(crate) layer_blending: LayerBlending,
+    pub(crate) shortcuts: bool,
 }
 
 impl Plugin for FluidRenderPlugin {
@@ -82,14 +88,17 @@ impl Plugin for FluidRenderPlugin {
         load_shader_library!(app, "functions.wgsl");
         load_shader_library!(app, "track.wgsl");
         load_shader_library!(app, "slopes.wgsl");
+        load_shader_library!(app, "medium.wgsl");
         load_shader_library!(app, "optics.wgsl");
         load_shader_library!(app, "splat/ellipsoid.wgsl");
         load_shader_library!(app, "smooth/window.wgsl");
+        load_shader_library!(app, "refract/inside.wgsl");
         load_shader_library!(app, "refract/layers.wgsl");
         load_shader_library!(app, "refract/search.wgsl");
         embedded_asset!(app, "scene_depth/resolve.wgsl");
         embedded_asset!(app, "splat/splat.wgsl");
         embedded_asset!(app, "splat/merge.wgsl");
+        embedded_asset!(app, "thickness/thickness.wgsl");
         embedded_asset!(app, "smooth/plane_fit.wgsl");
         embedded_asset!(app, "smooth/plane_fit_tls.wgsl");
         embedded_asset!(app, "smooth/bilateral.wgsl");
@@ -112,9 +121,11 @@ impl Plugin for FluidRenderPlugin {
         };
         render_app
             .insert_resource(support::WantedBlending(self.layer_blending))
+            .insert_resource(support::Shortcuts(self.shortcuts))
             .init_resource::<extract::FluidLights>()
             .init_gpu_resource::<bodies::FluidUniforms>()
             .init_gpu_resource::<SpecializedRenderPipelines<splat::SplatPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<thickness::ThicknessPipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<smooth::SmoothPipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<normals::NormalsPipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<refract::RefractPipeline>>()
@@ -126,7 +137,14 @@ impl Plugin for FluidRenderPlugin {
                     extract::forget_buffers,
                     scene_textures::init_placeholders,
                     scene_depth::init_scene_depth_pipelines,
-                    (splat::init_splat_pipeline, normals::init_normals_pipeline).chain(),
+                    (
+                        splat::init_splat_pipeline,
+                        (
+                            thickness::init_thickness_pipeline,
+                            normals::init_normals_pipeline,
+                        ),
+                    )
+                        .chain(),
                     smooth::init_smooth_pipeline,
                     refract::init_refract_pipeline,
                     composite::init_composite_pipeline,
@@ -161,6 +179,7 @@ impl Plugin for FluidRenderPlugin {
                     (
                         scene_depth::scene_depth.in_set(FluidPasses::SceneDepth),
                         splat::splat.in_set(FluidPasses::Splat),
+                        thickness::thickness.in_set(FluidPasses::Thickness),
                         smooth::smooth.in_set(FluidPasses::Smooth),
                         normals::normals.in_set(FluidPasses::Normals),
                         refract::refract.in_set(FluidPasses::Refract),

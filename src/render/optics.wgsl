@@ -8,11 +8,6 @@
 
 const PI: f32 = 3.14159265;
 
-// What is left of light after a path of some metres: Beer–Lambert, per channel.
-fn transmitted(path: f32) -> vec3<f32> {
-    return exp(-body.extinction * clamp(path, 0.0, 1e30));
-}
-
 // Exposed radiance from far away, along a direction in view space.
 fn environment(direction: vec3<f32>) -> vec3<f32> {
     if body.environment_intensity <= 0.0 {

@@ -7,23 +7,28 @@ use bevy::{
 };
 
 use super::{
-    composite::{CompositeKey, CompositePipeline},
+    composite::{CompositeKey, CompositePart, CompositePipeline},
     normals::{BulkNormals, NormalSource, NormalsPipeline},
     plan::Plan,
     refract::{RefractKey, RefractPipeline},
     smooth::{SmoothPipeline, SmoothSteps},
     splat::{SplatOutput, SplatPipeline, SplatPipelines},
+    support::FluidSupport,
+    thickness::ThicknessPipeline,
 };
-use crate::settings::{Fresnel, ScreenSpaceFluid, Search, Smoothing};
+use crate::settings::{ScreenSpaceFluid, Smoothing};
 
 /// The pipelines of a body's passes.
 pub(crate) struct BodyPipelines {
     pub(crate) splat: SplatPipelines,
+    pub(crate) thickness: Option<CachedRenderPipelineId>,
     pub(crate) smooth: Vec<CachedRenderPipelineId>,
     pub(crate) bulk_normals: BulkNormals,
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
     pub(crate) refract: CachedRenderPipelineId,
     pub(crate) composite: CachedRenderPipelineId,
+    /// Where light and depth are written apart.
+    pub(crate) composite_depth: Option<CachedRenderPipelineId>,
 }
 
 impl BodyPipelines {
@@ -31,14 +36,18 @@ impl BodyPipelines {
     pub(crate) fn ready(&self, cache: &PipelineCache) -> bool {
         let splat: &[_] = match &self.splat {
             SplatPipelines::MaxBlend(id) => &[*id],
-            SplatPipelines::DepthDraws { front, back, merge } => &[*front, *back, *merge],
+            SplatPipelines::DepthDraws { front, back, merge } => {
+                &[*front, *merge, back.unwrap_or(*front)]
+            }
         };
         splat
             .iter()
+            .chain(&self.thickness)
             .chain(&self.smooth)
             .chain(self.bulk_normals.pipelines())
             .chain(&self.spray_normals)
             .chain([&self.refract, &self.composite])
+            .chain(&self.composite_depth)
             .all(|&id| cache.get_render_pipeline(id).is_some())
     }
 }
@@ -49,6 +58,8 @@ pub(crate) struct Pipelines<'w> {
     cache: Res<'w, PipelineCache>,
     splat: Res<'w, SplatPipeline>,
     splats: ResMut<'w, SpecializedRenderPipelines<SplatPipeline>>,
+    thickness: Res<'w, ThicknessPipeline>,
+    thicknesses: ResMut<'w, SpecializedRenderPipelines<ThicknessPipeline>>,
     smooth: Res<'w, SmoothPipeline>,
     smooths: ResMut<'w, SpecializedRenderPipelines<SmoothPipeline>>,
     normals: Res<'w, NormalsPipeline>,
@@ -69,21 +80,30 @@ impl Pipelines<'_> {
             .specialize(&self.cache, &self.normals, source)
     }
 
+    fn composite(&mut self, key: CompositeKey) -> CachedRenderPipelineId {
+        self.composites
+            .specialize(&self.cache, &self.composite, key)
+    }
+
     /// All that a body's plan asks for.
     pub(crate) fn of(
         &mut self,
         plan: &Plan,
         steps: &SmoothSteps,
         settings: &ScreenSpaceFluid,
-        max_blend: bool,
+        support: &FluidSupport,
         composite: CompositeKey,
     ) -> BodyPipelines {
-        let splat = if max_blend {
-            SplatPipelines::MaxBlend(self.splat(SplatOutput::Layers))
+        let splat = if support.max_blend {
+            SplatPipelines::MaxBlend(self.splat(if plan.backs() {
+                SplatOutput::Layers
+            } else {
+                SplatOutput::Fronts
+            }))
         } else {
             SplatPipelines::DepthDraws {
                 front: self.splat(SplatOutput::FrontDepth),
-                back: self.splat(SplatOutput::BackDepth),
+                back: plan.backs().then(|| self.splat(SplatOutput::BackDepth)),
                 merge: self.splat.merge,
             }
         };
@@ -98,16 +118,15 @@ impl Pipelines<'_> {
             },
             _ => BulkNormals::Depth(self.normals(NormalSource::Depth)),
         };
-        let refract = RefractKey {
-            interfaces: plan.interfaces,
-            bulk: plan.bulk,
-            spray: plan.spray,
-            index_one: plan.index_one,
-            secant: plan.interfaces > 1 && settings.search == Search::Secant,
-            schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
-        };
+        let refract = RefractKey::new(plan, settings);
+        let thickness = plan.accumulated.then(|| {
+            let format = support.thickness_format;
+            self.thicknesses
+                .specialize(&self.cache, &self.thickness, format)
+        });
         BodyPipelines {
             splat,
+            thickness,
             smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
             bulk_normals,
             spray_normals: (plan.spray && !plan.index_one)
@@ -115,9 +134,17 @@ impl Pipelines<'_> {
             refract: self
                 .refracts
                 .specialize(&self.cache, &self.refract, refract),
-            composite: self
-                .composites
-                .specialize(&self.cache, &self.composite, composite),
+            composite: self.composite(composite),
+            composite_depth: (composite.part == CompositePart::Light).then(|| {
+                self.composite(CompositeKey {
+                    part: if plan.index_one {
+                        CompositePart::DenseDepth
+                    } else {
+                        CompositePart::Depth
+                    },
+                    ..composite
+                })
+            }),
         }
     }
 }

@@ -1,6 +1,12 @@
 //! Which passes a body needs in a view this frame: only what the scene has.
 
-use crate::settings::{ScreenSpaceFluid, Smoothing};
+use bevy::prelude::*;
+
+use crate::{
+    material::{FluidMaterial, Thickness},
+    medium::Medium,
+    settings::{ScreenSpaceFluid, Smoothing},
+};
 
 /// What is known of a body in a view before anything is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +21,12 @@ pub struct PlanInput {
     pub interior: u32,
     /// Particles of the spray.
     pub spray: u32,
-    /// Of the body's material.
-    pub refractive_index: f32,
+    /// Of the largest particles. Unit: m, in the world.
+    pub radius: f32,
+    /// What the body is made of.
+    pub material: FluidMaterial,
+    /// Whether work that the material makes needless is left out.
+    pub shortcuts: bool,
     /// The camera's settings.
     pub settings: ScreenSpaceFluid,
 }
@@ -36,6 +46,59 @@ pub struct Plan {
     pub interfaces: u32,
     /// Light passes unbent and nothing is reflected.
     pub index_one: bool,
+    /// The way through is summed up over the particles.
+    pub accumulated: bool,
+    /// Nothing is seen through it: there is no back, and nothing to search for.
+    pub opaque: bool,
+    /// What there is of a medium.
+    pub terms: MediumTerms,
+}
+
+impl Plan {
+    /// Whether the layers' backs are drawn.
+    pub fn backs(&self) -> bool {
+        !self.opaque && !self.accumulated
+    }
+}
+
+/// Which terms of a medium there are; the others are compiled out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MediumTerms {
+    /// Light is lost on its way.
+    pub extinction: bool,
+    /// Light from the scene is scattered to the eye.
+    pub scattering: bool,
+    /// The medium itself shines.
+    pub emission: bool,
+}
+
+impl MediumTerms {
+    const ALL: Self = Self {
+        extinction: true,
+        scattering: true,
+        emission: true,
+    };
+
+    fn of(medium: &Medium) -> Self {
+        let some = |v: Vec3| v.max_element() > 0.0;
+        Self {
+            extinction: some(medium.extinction()),
+            scattering: some(medium.scattered()),
+            emission: some(medium.emission.to_vec3()),
+        }
+    }
+
+    /// Whether the medium sends light of its own or of the scene.
+    pub fn source(&self) -> bool {
+        self.scattering || self.emission
+    }
+}
+
+/// What is left of light after half a particle radius of a medium that counts as opaque.
+const OPAQUE: f32 = 1e-3;
+
+fn is_opaque(medium: &Medium, radius: f32) -> bool {
+    medium.transmitted(0.5 * radius).max_element() <= OPAQUE
 }
 
 /// The plan for a body in a view; `None` if there is nothing to draw.
@@ -46,23 +109,37 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
     if !input.in_view || !(bulk || spray) {
         return None;
     }
-    let index_one = (input.refractive_index - 1.0).abs() < 1e-6;
+    let material = input.material.clamped();
+    let unbent = (material.refractive_index - 1.0).abs() < 1e-6;
+    let accumulated = unbent && material.thickness != Thickness::Layers;
+    let index_one = accumulated || unbent && input.shortcuts;
+    // Soft rims are thin wherever they are.
+    let opaque = input.shortcuts && !accumulated && is_opaque(&material.medium, input.radius);
+    let budget = input.settings.refractions.count();
     Some(Plan {
         bulk,
         spray,
         interior,
-        smoothing: if bulk {
+        // What is summed up over the particles has no surface to smooth.
+        smoothing: if bulk && !accumulated {
             input.settings.smoothing
         } else {
             Smoothing::None
         },
         // One class has but one front and one back, but total reflection may want the rest.
-        interfaces: if index_one {
-            0
-        } else {
-            input.settings.refractions.count()
+        interfaces: match () {
+            () if index_one => 0,
+            () if opaque => budget.min(1),
+            () => budget,
         },
         index_one,
+        accumulated,
+        opaque,
+        terms: if input.shortcuts {
+            MediumTerms::of(&material.medium)
+        } else {
+            MediumTerms::ALL
+        },
     })
 }
 
@@ -76,7 +153,9 @@ mod tests {
         bulk: 100,
         interior: 50,
         spray: 3,
-        refractive_index: 1.333,
+        radius: 0.05,
+        material: FluidMaterial::WATER,
+        shortcuts: true,
         settings: ScreenSpaceFluid::DEFAULT,
     };
 
@@ -124,13 +203,81 @@ mod tests {
 
     #[test]
     fn index_one_means_no_interfaces() {
-        let input = PlanInput {
-            refractive_index: 1.0,
-            ..POOL
+        let mut input = POOL;
+        input.material.refractive_index = 1.0;
+        let unbent = plan(&input).unwrap();
+        assert!(unbent.index_one && unbent.backs() && !unbent.accumulated);
+        assert_eq!(unbent.interfaces, 0);
+        input.shortcuts = false;
+        let traced = plan(&input).unwrap();
+        assert!(!traced.index_one);
+        assert_eq!(traced.interfaces, 4);
+    }
+
+    #[test]
+    fn accumulated_thickness_needs_neither_backs_nor_smoothing() {
+        let mut input = POOL;
+        input.material = FluidMaterial::SMOKE;
+        let smoke = plan(&input).unwrap();
+        assert!(smoke.index_one && smoke.accumulated && !smoke.backs());
+        assert_eq!(smoke.smoothing, Smoothing::None);
+        input.material.refractive_index = 1.1;
+        let bent = plan(&input).unwrap();
+        assert!(!bent.accumulated && bent.backs());
+        assert_eq!(bent.smoothing, POOL.settings.smoothing);
+    }
+
+    #[test]
+    fn an_opaque_medium_has_no_back_and_nothing_to_search_for() {
+        let mut input = POOL;
+        input.material = FluidMaterial::MILK;
+        let milk = plan(&input).unwrap();
+        assert!(milk.opaque && !milk.backs());
+        assert_eq!(milk.interfaces, 1);
+        // A tenth of a millimetre of milk is a film that one sees through.
+        input.radius = 1e-4;
+        assert!(!plan(&input).unwrap().opaque);
+        // One channel that passes is enough.
+        input.radius = 0.05;
+        input.material.medium = Medium {
+            absorption_density: 1e6,
+            absorption_color: LinearRgba::RED,
+            ..Medium::CLEAR
         };
-        let plan = plan(&input).unwrap();
-        assert!(plan.index_one);
-        assert_eq!(plan.interfaces, 0);
+        assert!(!plan(&input).unwrap().opaque);
+    }
+
+    #[test]
+    fn a_medium_has_the_terms_that_are_not_zero() {
+        let terms = |material| plan(&PlanInput { material, ..POOL }).unwrap().terms;
+        let none = MediumTerms::default();
+        assert_eq!(terms(FluidMaterial::CLEAR_WATER), none);
+        let extinction = MediumTerms {
+            extinction: true,
+            ..none
+        };
+        assert_eq!(terms(FluidMaterial::WATER), extinction);
+        let scattering = MediumTerms {
+            scattering: true,
+            ..extinction
+        };
+        assert_eq!(terms(FluidMaterial::SMOKE), scattering);
+        let emission = MediumTerms {
+            emission: true,
+            ..extinction
+        };
+        assert_eq!(terms(FluidMaterial::FIRE), emission);
+        // Matter of no colour only takes.
+        let soot = Medium {
+            scattering_density: 1.0,
+            scattering_color: LinearRgba::BLACK,
+            ..Medium::CLEAR
+        };
+        let soot = FluidMaterial {
+            medium: soot,
+            ..FluidMaterial::WATER
+        };
+        assert_eq!(terms(soot), extinction);
     }
 
     #[test]

@@ -31,11 +31,17 @@ pub(crate) struct FluidSupport {
     /// Fluids can be drawn at all.
     pub(crate) drawing: bool,
     pub(crate) max_blend: bool,
+    /// What sums over particles are kept in.
+    pub(crate) thickness_format: TextureFormat,
 }
 
 /// The wish of [`FluidPlugin`](crate::FluidPlugin), in the render world.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(crate) struct WantedBlending(pub(crate) LayerBlending);
+
+/// Whether the plan may leave work out, likewise.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(crate) struct Shortcuts(pub(crate) bool);
 
 pub(crate) fn init_support(
     mut commands: Commands,
@@ -54,7 +60,11 @@ pub(crate) fn init_support(
     }
     // OpenGL claims it without looking.
     let trusted = format!("{:?}", info.backend) != "Gl";
-    let can_blend = trusted && can_blend(device.features(), layers.flags);
+    let can_blend_in = |format| {
+        let own = adapter.get_texture_format_features(format).flags;
+        trusted && can_blend(device.features(), own)
+    };
+    let can_blend = can_blend_in(LAYER_FORMAT);
     let max_blend = can_blend && wanted.0 != LayerBlending::DepthDraws;
     if wanted.0 == LayerBlending::MaxBlend && !can_blend {
         warn!(
@@ -62,7 +72,17 @@ pub(crate) fn init_support(
             info.name
         );
     }
-    commands.insert_resource(FluidSupport { drawing, max_blend });
+    // Halves can be blended everywhere; they hold a sum to a two thousandth at best.
+    let thickness_format = if max_blend && can_blend_in(TextureFormat::R32Float) {
+        TextureFormat::R32Float
+    } else {
+        TextureFormat::R16Float
+    };
+    commands.insert_resource(FluidSupport {
+        drawing,
+        max_blend,
+        thickness_format,
+    });
 }
 
 fn can_draw(limits: &WgpuLimits, layers: TextureUsages) -> bool {

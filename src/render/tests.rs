@@ -9,19 +9,24 @@ use bevy::{
             SpecializedRenderPipelines, TextureFormat,
         },
     },
+    shader::ShaderDefVal,
 };
 use fluid_stage::{headless_app, settle};
 
 use super::{
-    composite::{CompositeKey, CompositePipeline},
+    composite::{CompositeKey, CompositePart, CompositePipeline},
     normals::{NormalSource, NormalsPipeline},
+    plan::{MediumTerms, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
     smooth::{SmoothPipeline, SmoothSteps},
     splat::{SplatOutput, SplatPipeline},
+    thickness::ThicknessPipeline,
 };
 use crate::{
-    FluidPlugin,
-    settings::{Bilateral, FluidDebugView, NarrowRange, PlaneFit, PlaneFitForm, Smoothing},
+    FluidMaterial, FluidPlugin,
+    settings::{
+        Bilateral, FluidDebugView, NarrowRange, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing,
+    },
 };
 
 const BOTH: [bool; 2] = [false, true];
@@ -65,6 +70,7 @@ fn assert_variants<P: SpecializedRenderPipeline + Resource>(keys: Vec<P::Key>) {
 fn every_splat_output_is_made() {
     assert_variants::<SplatPipeline>(vec![
         SplatOutput::Layers,
+        SplatOutput::Fronts,
         SplatOutput::FrontDepth,
         SplatOutput::BackDepth,
     ]);
@@ -120,6 +126,23 @@ fn every_smoothing_is_made() {
     });
 }
 
+/// Bulk and spray traced through a medium that has no terms.
+const TRACED: RefractKey = RefractKey {
+    interfaces: 4,
+    bulk: true,
+    spray: true,
+    index_one: false,
+    secant: false,
+    schlick: false,
+    accumulated: false,
+    opaque: false,
+    terms: MediumTerms {
+        extinction: false,
+        scattering: false,
+        emission: false,
+    },
+};
+
 #[test]
 fn every_refraction_is_made() {
     let classes = [(true, false), (false, true), (true, true)];
@@ -130,9 +153,9 @@ fn every_refraction_is_made() {
                 interfaces,
                 bulk,
                 spray,
-                index_one: false,
                 secant,
                 schlick,
+                ..TRACED
             },
         );
     let straight = classes.map(|(bulk, spray)| RefractKey {
@@ -140,10 +163,84 @@ fn every_refraction_is_made() {
         bulk,
         spray,
         index_one: true,
-        secant: false,
-        schlick: false,
+        ..TRACED
     });
     assert_variants::<RefractPipeline>(bent.chain(straight).collect());
+}
+
+#[test]
+fn every_medium_is_made() {
+    let terms = pairs(&BOTH, &pairs(&BOTH, &BOTH));
+    let terms = terms
+        .into_iter()
+        .map(|(extinction, (scattering, emission))| MediumTerms {
+            extinction,
+            scattering,
+            emission,
+        });
+    let one = RefractKey {
+        interfaces: 1,
+        ..TRACED
+    };
+    let straight = RefractKey {
+        interfaces: 0,
+        index_one: true,
+        ..TRACED
+    };
+    let bodies = [
+        TRACED,
+        one,
+        straight,
+        RefractKey {
+            opaque: true,
+            ..one
+        },
+        RefractKey {
+            opaque: true,
+            ..straight
+        },
+        RefractKey {
+            accumulated: true,
+            ..straight
+        },
+    ];
+    let bodies = bodies.into_iter();
+    let keys = terms.flat_map(|terms| bodies.clone().map(move |key| RefractKey { terms, ..key }));
+    assert_variants::<RefractPipeline>(keys.collect());
+}
+
+#[test]
+fn a_medium_without_terms_costs_nothing() {
+    let input = PlanInput {
+        in_view: true,
+        near_plane_cuts: false,
+        bulk: 1,
+        interior: 0,
+        spray: 1,
+        radius: 0.1,
+        material: FluidMaterial::CLEAR_WATER,
+        shortcuts: true,
+        settings: ScreenSpaceFluid::DEFAULT,
+    };
+    let key = |material| {
+        let plan = plan(&PlanInput { material, ..input }).unwrap();
+        RefractKey::new(&plan, &input.settings)
+    };
+    assert_eq!(key(FluidMaterial::CLEAR_WATER), TRACED);
+    // What the shader is told of it is what it was told before it knew of media.
+    let defs: [ShaderDefVal; 4] = [
+        "BULK_LAYERS".into(),
+        "SPRAY_LAYERS".into(),
+        ShaderDefVal::UInt("INTERFACES".into(), 4),
+        ShaderDefVal::Bool("BOTH_CLASSES".into(), true),
+    ];
+    assert_eq!(TRACED.shader_defs(), defs);
+    assert_ne!(key(FluidMaterial::WATER), TRACED);
+}
+
+#[test]
+fn every_thickness_is_made() {
+    assert_variants::<ThicknessPipeline>(vec![TextureFormat::R32Float, TextureFormat::R16Float]);
 }
 
 #[test]
@@ -167,6 +264,23 @@ fn every_composite_and_debug_view_is_made() {
             debug_view,
             format,
             samples,
+            part: CompositePart::Whole,
+            several: false,
         });
-    assert_variants::<CompositePipeline>(keys.collect());
+    let parts = [
+        CompositePart::Light,
+        CompositePart::Depth,
+        CompositePart::DenseDepth,
+    ];
+    let parts = pairs(&pairs(&parts, &formats), &[1, 4]);
+    let parts = parts
+        .into_iter()
+        .map(|((part, format), samples)| CompositeKey {
+            debug_view: None,
+            format,
+            samples,
+            part,
+            several: true,
+        });
+    assert_variants::<CompositePipeline>(keys.chain(parts).collect());
 }

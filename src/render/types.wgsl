@@ -12,6 +12,8 @@ struct Splat {
 // Where a fluid stands.
 struct GpuFluid {
     world_from_local: mat4x4<f32>,
+    // Particle radius in the fluid's space.
+    radius: f32,
 }
 
 struct GpuDirectionalLight {
@@ -49,6 +51,18 @@ struct GpuBody {
     coarse_samples: u32,
     // Search: how far behind the liquid an opaque surface is wetted, world units.
     contact: f32,
+    // Medium: scattering colour times density, 1/m.
+    scattering: vec3<f32>,
+    // Medium: what a metre sends, exposed.
+    emission: vec3<f32>,
+    // Mean over all directions of the light from lights and ambient, exposed.
+    even_light: vec3<f32>,
+    // Turns texels of the diffuse environment map into the view's units; 0: there is none.
+    diffuse_intensity: f32,
+    // Accumulated thickness: density (1 − q²)^softness within a splat.
+    softness: f32,
+    // Centre of the next body behind this one in view space, and 1; 0: there is none.
+    behind: vec4<f32>,
 }
 
 // Depth layers hold (device depth of the front, −device depth of the back), so that one `max`

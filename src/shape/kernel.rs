@@ -117,6 +117,13 @@ impl SurfaceKernel {
         ..Self::DEFAULT
     };
 
+    /// For smoke and fire: every particle a ball of its radius, all of one class. Let the radius
+    /// be as wide as the spacing and more, so that balls overlap, and the medium so much thinner.
+    pub const PUFFS: Self = Self {
+        neighbor_radius: 1.0,
+        ..Self::EARLIER
+    };
+
     /// Checks every field against its documented range.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ fn medium(extinction: f32) -> Medium {
     Medium {
         absorption_density: extinction,
         absorption_color: LinearRgba::BLACK,
+        ..Medium::CLEAR
     }
 }
 

@@ -96,6 +96,7 @@ fn h27_without_a_back_layer_one_refraction_with_its_status() {
     );
     let plugin = FluidPlugin {
         layer_blending: LayerBlending::DepthDraws,
+        ..default()
     };
     log::listen();
     let mut app = show_with(plugin, &view, TRACED, |world| {
@@ -246,6 +247,7 @@ fn h31_index_one_neither_bends_nor_reflects() {
         medium: Medium {
             absorption_density: 1.0,
             absorption_color: LinearRgba::rgb(0.0, 0.5, 1.0),
+            ..Medium::CLEAR
         },
         ..clear(1.0)
     };
@@ -359,6 +361,7 @@ fn h33_opaque_absorption_lets_nothing_through() {
                 medium: Medium {
                     absorption_density: density,
                     absorption_color: LinearRgba::BLACK,
+                    ..Medium::CLEAR
                 },
                 ..clear(index)
             };

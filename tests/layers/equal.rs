@@ -19,6 +19,7 @@ fn both_ways_of_blending_give_the_same_layers() {
     let [blended, drawn] = [LayerBlending::MaxBlend, LayerBlending::DepthDraws].map(|blending| {
         let plugin = FluidPlugin {
             layer_blending: blending,
+            ..default()
         };
         let app = show_with(plugin, &view, RAW, |world| {
             world.spawn(fluid(&pool, 0.3, BULK));

@@ -31,6 +31,7 @@ mod pipelines;
 mod plugins;
 mod read;
 pub mod scenery;
+mod shapes;
 pub mod simulation;
 mod stage;
 mod texels;
@@ -45,6 +46,7 @@ pub use headless::{
 pub use picture::PendingPicture;
 pub use plugins::{StagePlugins, VIEW_SIZE};
 pub use read::{read_buffer, read_subresource, read_texture};
+pub use shapes::ball;
 pub use stage::Stage;
 pub use texels::TextureData;
 pub use timing::{gpu_spans, median_gpu_ms};

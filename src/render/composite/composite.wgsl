@@ -16,8 +16,14 @@
 @group(1) @binding(7) var scene_color: texture_2d<f32>;
 @group(1) @binding(8) var scene_sampler: sampler;
 
+#ifdef SEVERAL
+@group(1) @binding(9) var scene_before: texture_2d<f32>;
+#endif
+
 struct Output {
+#ifndef DEPTH_ALONE
     @location(0) color: vec4<f32>,
+#endif
     @builtin(frag_depth) depth: f32,
 }
 
@@ -28,12 +34,35 @@ const STEP_PIXELS: f32 = 6.0;
 const MAX_STEPS: f32 = 32.0;
 const REFINEMENTS: i32 = 5;
 
-fn color_at(pixel: vec2<f32>) -> vec3<f32> {
+fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec3<f32> {
     // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
     let low = view.main_pass_viewport.xy + 0.5;
     let high = view.main_pass_viewport.xy + view.main_pass_viewport.zw - 0.5;
-    let uv = clamp(pixel, low, high) / vec2<f32>(textureDimensions(scene_color));
-    return textureSampleLevel(scene_color, scene_sampler, uv, 0.0).rgb;
+    let uv = clamp(pixel, low, high) / vec2<f32>(textureDimensions(scene));
+    return textureSampleLevel(scene, scene_sampler, uv, 0.0).rgb;
+}
+
+fn color_at(pixel: vec2<f32>) -> vec3<f32> {
+    return color_in(scene_color, pixel);
+}
+
+// What is far away along a ray that meets nothing opaque: the environment, or a body that has been
+// painted before it. Bodies are in no depth that could be searched; where the ray passes the
+// centre of the next one, its colour has changed the picture.
+fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+#ifdef SEVERAL
+    let t = dot(body.behind.xyz - position, direction);
+    let device = device_from_view(position + t * direction);
+    if body.behind.w > 0.0 && t > 0.0 && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
+        let pixel = pixel_from_ndc(device.xy);
+        let painted = color_at(pixel);
+        if nearest_scene_depth(vec2<i32>(pixel)) <= 0.0
+            && any(painted != color_in(scene_before, pixel)) {
+            return painted;
+        }
+    }
+#endif
+    return environment(direction);
 }
 
 // The end of a ray on screen, where it leaves the viewport or comes to its vanishing point.
@@ -114,7 +143,25 @@ fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
         }
         before = s;
     }
-    return environment(direction);
+    return far_away(position, direction);
+}
+
+// What the liquid sends and lets pass.
+fn light(pixel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
+    let uv = unpack2x16unorm(exit.x);
+    let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
+    var behind: vec3<f32>;
+    if (exit.w & DIRECT) != 0u {
+        behind = color_at(pixel_from_ndc(ndc));
+    } else {
+        let start = view_from_device(ndc, bitcast<f32>(exit.y));
+        behind = background(start, decode_normal(unpack2x16snorm(exit.z)));
+    }
+    return textureLoad(radiance, pixel, 0).rgb + textureLoad(transmission, pixel, 0).rgb * behind;
+}
+
+fn max3(v: vec3<f32>) -> f32 {
+    return max(v.x, max(v.y, v.z));
 }
 
 @fragment
@@ -128,19 +175,15 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let spray = textureLoad(spray_layers, pixel, 0).xy;
     let front = max(bulk.x, spray.x);
 
-    let uv = unpack2x16unorm(exit.x);
-    let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
-    var behind: vec3<f32>;
-    if (exit.w & DIRECT) != 0u {
-        behind = color_at(pixel_from_ndc(ndc));
-    } else {
-        let start = view_from_device(ndc, bitcast<f32>(exit.y));
-        behind = background(start, decode_normal(unpack2x16snorm(exit.z)));
-    }
-
     var out: Output;
-    let light = textureLoad(radiance, pixel, 0).rgb + textureLoad(transmission, pixel, 0).rgb * behind;
-    out.color = vec4(light, 1.0);
+#ifdef DENSE
+    if max3(textureLoad(transmission, pixel, 0).rgb) > 0.5 {
+        discard;
+    }
+#endif
+#ifndef DEPTH_ALONE
+    out.color = vec4(light(pixel, exit), 1.0);
+#endif
     out.depth = front;
     if front >= INSIDE_FRONT {
         // The eye is in the liquid: its far surface, or what stands in it, is what is seen.

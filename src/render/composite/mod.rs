@@ -6,14 +6,16 @@ use bevy::{
     prelude::*,
     render::{
         diagnostic::RecordDiagnostics,
+        render_phase::TrackedRenderPass,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, DepthStencilState,
-            Extent3d, MultisampleState, PipelineCache, RenderPassDescriptor,
-            RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
-            StoreOp, TextureFormat, TextureSampleType, VertexState,
+            BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction,
+            DepthStencilState, Extent3d, MultisampleState, PipelineCache, RenderPassDescriptor,
+            RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderStages,
+            SpecializedRenderPipeline, StoreOp, TextureFormat, TextureSampleType, VertexState,
             binding_types::{sampler, texture_2d, texture_cube, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
+        texture::CachedTexture,
         view::{ViewDepthTexture, ViewTarget},
     },
     shader::Shader,
@@ -21,7 +23,7 @@ use bevy::{
 
 use super::{
     bindings::{common_layout, defs, fragment},
-    bodies::ViewBodies,
+    bodies::{Body, ViewBodies},
 };
 use crate::settings::FluidDebugView;
 
@@ -30,6 +32,34 @@ pub(crate) struct CompositeKey {
     pub(crate) debug_view: Option<FluidDebugView>,
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
+    pub(crate) part: CompositePart,
+    /// There are other bodies, which may be seen through this one.
+    pub(crate) several: bool,
+}
+
+/// What is written. Were bodies to write their depth at once, one that is painted later would be
+/// cut off where it is behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum CompositePart {
+    /// Light and depth: the only body, or a debug view.
+    Whole,
+    /// Light alone.
+    Light,
+    /// Depth alone, once all bodies' light is there.
+    Depth,
+    /// Likewise, where more than half of the background is hidden: what is transparent and comes
+    /// later is hidden by dense smoke, but not by thin.
+    DenseDepth,
+}
+
+impl CompositePart {
+    fn depth(self) -> bool {
+        self != Self::Light
+    }
+
+    fn light(self) -> bool {
+        matches!(self, Self::Whole | Self::Light)
+    }
 }
 
 #[derive(Resource)]
@@ -64,6 +94,7 @@ pub(crate) fn init_composite_pipeline(
                     unfiltered(),
                     filtered(),
                     sampler(SamplerBindingType::Filtering),
+                    filtered(),
                 ),
             ),
         ),
@@ -100,7 +131,11 @@ impl SpecializedRenderPipeline for CompositePipeline {
             ("INTERFACES", is(FluidDebugView::Interfaces)),
             ("STATUS", is(FluidDebugView::Status)),
             ("CLASSES", is(FluidDebugView::Classes)),
+            ("DEPTH_ALONE", !key.part.light()),
+            ("SEVERAL", key.several),
+            ("DENSE", key.part == CompositePart::DenseDepth),
         ]);
+        let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
         let (layout, shader, compare) = match key.debug_view {
             None => (&self.layout, &self.shader, CompareFunction::GreaterEqual),
             Some(_) => (
@@ -116,7 +151,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
             depth_stencil: Some(DepthStencilState {
                 format: CORE_3D_DEPTH_FORMAT,
                 // What is transparent or comes after sorts against the liquid.
-                depth_write_enabled: Some(key.debug_view.is_none()),
+                depth_write_enabled: Some(key.debug_view.is_none() && key.part.depth()),
                 depth_compare: Some(compare),
                 stencil: default(),
                 bias: default(),
@@ -125,7 +160,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
                 count: key.samples,
                 ..default()
             },
-            fragment: Some(fragment(shader, shader_defs, &[key.format], None)),
+            fragment: Some(fragment(shader, shader_defs, formats, None)),
             ..default()
         }
     }
@@ -141,6 +176,7 @@ pub(crate) fn composite(
     let recorder = ctx.diagnostic_recorder();
     let recorder = recorder.as_deref();
     let span = recorder.time_span(ctx.command_encoder(), "fluid_composite");
+    copy_scene(&mut ctx, target, bodies, &bodies.scene_before);
     for body in bodies.ready() {
         let (Some(pipeline), Some(group)) = (
             cache.get_render_pipeline(body.pipelines.composite),
@@ -148,31 +184,59 @@ pub(crate) fn composite(
         ) else {
             continue;
         };
-        if !body.debug {
-            copy_scene(&mut ctx, target, bodies);
-        }
+        copy_scene(&mut ctx, target, bodies, &bodies.scene_color);
         let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("fluid_composite"),
             color_attachments: &[Some(target.get_color_attachment())],
             depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
             ..default()
         });
-        body.set_scissor(&mut pass);
-        pass.set_render_pipeline(pipeline);
-        body.set_common(&mut pass);
-        if body.debug {
-            pass.set_bind_group(1, group, &[body.depth_range_offset]);
-        } else {
-            pass.set_bind_group(1, group, &[]);
-        }
-        pass.draw(0..3, 0..1);
+        paint(&mut pass, body, pipeline, group);
+    }
+    for body in bodies.ready() {
+        let (Some(pipeline), Some(group)) = (
+            body.pipelines
+                .composite_depth
+                .and_then(|id| cache.get_render_pipeline(id)),
+            &body.groups.composite,
+        ) else {
+            continue;
+        };
+        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("fluid_composite_depth"),
+            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+            ..default()
+        });
+        paint(&mut pass, body, pipeline, group);
     }
     span.end(ctx.command_encoder());
 }
 
+fn paint<'a>(
+    pass: &mut TrackedRenderPass<'a>,
+    body: &'a Body,
+    pipeline: &'a RenderPipeline,
+    group: &'a BindGroup,
+) {
+    body.set_scissor(pass);
+    pass.set_render_pipeline(pipeline);
+    body.set_common(pass);
+    if body.debug {
+        pass.set_bind_group(1, group, &[body.depth_range_offset]);
+    } else {
+        pass.set_bind_group(1, group, &[]);
+    }
+    pass.draw(0..3, 0..1);
+}
+
 /// The colour so far, where rays can look it up while the target is written to.
-fn copy_scene(ctx: &mut RenderContext, target: &ViewTarget, bodies: &ViewBodies) {
-    let Some(copy) = &bodies.scene_color else {
+fn copy_scene(
+    ctx: &mut RenderContext,
+    target: &ViewTarget,
+    bodies: &ViewBodies,
+    copy: &Option<CachedTexture>,
+) {
+    let Some(copy) = copy else {
         return;
     };
     // Rays leave the body's own rectangle, so the whole viewport may be asked for.

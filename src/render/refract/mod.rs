@@ -21,7 +21,9 @@ use super::{
     bindings::{cleared, common_layout, defs, fragment},
     bodies::ViewBodies,
     layers::{EXIT_FORMAT, LIGHT_FORMAT},
+    plan::{MediumTerms, Plan},
 };
+use crate::settings::{Fresnel, ScreenSpaceFluid, Search};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RefractKey {
@@ -31,12 +33,52 @@ pub(crate) struct RefractKey {
     pub(crate) index_one: bool,
     pub(crate) secant: bool,
     pub(crate) schlick: bool,
+    pub(crate) accumulated: bool,
+    pub(crate) opaque: bool,
+    pub(crate) terms: MediumTerms,
+}
+
+impl RefractKey {
+    pub(crate) fn new(plan: &Plan, settings: &ScreenSpaceFluid) -> Self {
+        Self {
+            interfaces: plan.interfaces,
+            bulk: plan.bulk,
+            spray: plan.spray,
+            index_one: plan.index_one,
+            secant: plan.interfaces > 1 && settings.search == Search::Secant,
+            schlick: !plan.index_one && settings.fresnel == Fresnel::Schlick,
+            accumulated: plan.accumulated,
+            opaque: plan.opaque,
+            terms: plan.terms,
+        }
+    }
+
+    /// The conditions and numbers that the shader is compiled with.
+    pub(crate) fn shader_defs(&self) -> Vec<ShaderDefVal> {
+        let mut shader_defs = defs([
+            ("BULK_LAYERS", self.bulk),
+            ("SPRAY_LAYERS", self.spray),
+            ("INDEX_ONE", self.index_one),
+            ("SECANT", self.secant),
+            ("SCHLICK", self.schlick),
+            ("ACCUMULATED", self.accumulated),
+            ("OPAQUE", self.opaque),
+            ("EXTINCTION", self.terms.extinction),
+            ("SCATTERING", self.terms.scattering),
+            ("SOURCE", self.terms.source()),
+        ]);
+        shader_defs.push(ShaderDefVal::UInt("INTERFACES".into(), self.interfaces));
+        let both = self.bulk && self.spray;
+        shader_defs.push(ShaderDefVal::Bool("BOTH_CLASSES".into(), both));
+        shader_defs
+    }
 }
 
 #[derive(Resource)]
 pub(crate) struct RefractPipeline {
     fullscreen: VertexState,
-    /// Environment map, its sampler, layers and normals of bulk and spray, their sampler.
+    /// Environment map, its sampler, layers and normals of bulk and spray, their sampler,
+    /// diffuse environment map, thickness.
     pub(crate) layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
@@ -61,6 +103,8 @@ pub(crate) fn init_refract_pipeline(
                     unfiltered(),
                     unfiltered(),
                     sampler(SamplerBindingType::NonFiltering),
+                    texture_cube(TextureSampleType::Float { filterable: true }),
+                    unfiltered(),
                 ),
             ),
         ),
@@ -72,23 +116,13 @@ impl SpecializedRenderPipeline for RefractPipeline {
     type Key = RefractKey;
 
     fn specialize(&self, key: RefractKey) -> RenderPipelineDescriptor {
-        let mut shader_defs = defs([
-            ("BULK_LAYERS", key.bulk),
-            ("SPRAY_LAYERS", key.spray),
-            ("INDEX_ONE", key.index_one),
-            ("SECANT", key.secant),
-            ("SCHLICK", key.schlick),
-        ]);
-        shader_defs.push(ShaderDefVal::UInt("INTERFACES".into(), key.interfaces));
-        let both = key.bulk && key.spray;
-        shader_defs.push(ShaderDefVal::Bool("BOTH_CLASSES".into(), both));
         RenderPipelineDescriptor {
             label: Some("fluid_refract_pipeline".into()),
             layout: vec![common_layout(), self.layout.clone()],
             vertex: self.fullscreen.clone(),
             fragment: Some(fragment(
                 &self.shader,
-                shader_defs,
+                key.shader_defs(),
                 &[LIGHT_FORMAT, LIGHT_FORMAT, EXIT_FORMAT],
                 None,
             )),

@@ -5,7 +5,9 @@
     device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
     nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_from_device, view_ray,
 }
-#import bevy_fluid::render::optics::{environment, facing, highlights, meet, transmitted}
+#import bevy_fluid::render::medium::{reflected, transmitted}
+#import bevy_fluid::render::optics::{environment, facing, highlights, meet}
+#import bevy_fluid::render::refract::inside::{accumulated_length, medium_source}
 #import bevy_fluid::render::refract::layers::{
     BACK, BULK, FRONT, SPRAY, layer_depth, layer_normal, load_layers, load_normal, on_screen,
 }
@@ -19,9 +21,15 @@ const MAX_HALF: f32 = 65504.0;
 const INTERFACES: u32 = #{INTERFACES}u;
 // There is a second class to enter.
 const BOTH_CLASSES: bool = #{BOTH_CLASSES};
+#ifdef OPAQUE
+// Nothing is seen through the body.
+const SEEN_THROUGH: bool = false;
+#else
+const SEEN_THROUGH: bool = true;
+#endif
 
 struct Output {
-    // What the liquid itself sends: reflections and highlights.
+    // What the liquid itself sends: reflections and highlights, and what its medium does.
     @location(0) radiance: vec4<f32>,
     // What is left of the background's light.
     @location(1) transmission: vec4<f32>,
@@ -34,6 +42,8 @@ struct Path {
     direction: vec3<f32>,
     radiance: vec3<f32>,
     transmission: vec3<f32>,
+    // What a metre of the medium sends.
+    source: vec3<f32>,
     kind: u32,
     first_kind: u32,
     interfaces: u32,
@@ -71,6 +81,17 @@ fn pixel_of(position: vec3<f32>) -> vec2<f32> {
     return pixel_from_ndc(device_from_view(position).xy);
 }
 
+// A way through the medium: what it sends joins what came before it, and what it takes is lost to
+// all behind it.
+fn pass_through(path: ptr<function, Path>, length: f32) {
+#ifdef SOURCE
+    (*path).radiance += (*path).transmission * reflected((*path).source, body.extinction, length);
+#endif
+#ifdef EXTINCTION
+    (*path).transmission *= transmitted(body.extinction, length);
+#endif
+}
+
 fn advance(path: ptr<function, Path>, t: f32) {
     (*path).position += t * (*path).direction;
 }
@@ -88,7 +109,7 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     }
     advance(path, met.t);
     if inside {
-        (*path).transmission *= transmitted(met.t);
+        pass_through(path, met.t);
     }
     (*path).direct = true;
     note(path, STATUS_OPAQUE);
@@ -105,6 +126,12 @@ fn straight_span(layers: vec2<f32>, pixel: vec2<i32>) -> vec2<f32> {
 
 // The straight way through the liquid at a pixel; where bulk and spray overlap it counts once.
 fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
+#ifdef ACCUMULATED
+    return accumulated_length(pixel);
+#else ifdef OPAQUE
+    // Farther than light comes.
+    return 1e30;
+#else
     let bulk = straight_span(load_layers(BULK, pixel), pixel);
     let spray = straight_span(load_layers(SPRAY, pixel), pixel);
     let both = vec2(min(bulk.x, spray.x), max(bulk.y, spray.y));
@@ -113,6 +140,7 @@ fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
         length -= span_length(both, ndc);
     }
     return length;
+#endif
 }
 
 fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
@@ -157,7 +185,7 @@ fn trace(path: ptr<function, Path>) {
         if stops(path, found.t + contact((*path).direction, n), true) {
             return;
         }
-        (*path).transmission *= transmitted(found.t);
+        pass_through(path, found.t);
         (*path).position = hit;
         if BOTH_CLASSES && in_liquid(1u - (*path).kind, hit) {
             // Bulk and spray overlap: no interface lies between them.
@@ -227,6 +255,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     path.first_kind = select(SPRAY, BULK, bulk.x >= spray.x);
     path.kind = path.first_kind;
     path.transmission = vec3(1.0);
+#ifdef SOURCE
+    path.source = medium_source();
+#endif
     let ray = view_ray(ndc);
     path.direction = ray.direction;
     let starts_inside = front >= INSIDE_FRONT;
@@ -235,7 +266,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 
 #ifdef INDEX_ONE
     path.direct = true;
-    path.transmission = transmitted(straight_length(pixel, ndc));
+    pass_through(&path, straight_length(pixel, ndc));
     path.interfaces = 0u;
 #else
     var entered = true;
@@ -252,11 +283,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     if INTERFACES <= 1u {
         // No search: the path is as long as the liquid is deep at this pixel.
         let straight = straight_length(pixel, ndc);
-        path.transmission *= transmitted(straight);
-        if INTERFACES == 0u {
+        pass_through(&path, straight);
+        if !SEEN_THROUGH || INTERFACES == 0u {
             path.direction = ray.direction;
             path.direct = true;
-            path.interfaces = 0u;
+            path.interfaces = min(path.interfaces, INTERFACES);
         } else {
             advance(&path, straight);
         }

@@ -3,7 +3,7 @@
 
 #import bevy_fluid::render::bindings::view
 #import bevy_fluid::render::functions::{
-    device_from_view, ndc_from_pixel, pixel_from_ndc, view_ray,
+    Ray, device_from_view, ndc_from_pixel, pixel_from_ndc, view_ray,
 }
 #import bevy_fluid::render::types::{GpuFluid, INSIDE_FRONT, Splat}
 
@@ -133,14 +133,25 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     let corner_ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
     out.position = select(vec4(2.0, 2.0, 0.5, 1.0), vec4(corner_ndc, 0.5, 1.0), seen);
 
-    if z.w - w.w + length(z.xyz - w.xyz) >= 0.0 {
-        // Some of it has z > w: nearer than the near plane.
+#ifdef VIEW_SPACE
+    let in_view_space = true;
+#else
+    // Some of it has z > w: nearer than the near plane.
+    let in_view_space = z.w - w.w + length(z.xyz - w.xyz) >= 0.0;
+#endif
+    if in_view_space {
         let inverse = inverse3(shape) * (1.0 / splat.scale);
         out.form = 1u;
         out.x = vec4(inverse[0], 0.0);
         out.y = vec4(inverse[1], 0.0);
         out.d = vec4(inverse[2], 0.0);
         out.center = center;
+#ifdef VIEW_SPACE
+        // The volume that the particle fills at rest, (2r)³, over that of its splat.
+        let spacing = 2.0 * fluid.radius / splat.scale;
+        let volume = 4.18879 * abs(determinant(axes_matrix(splat)));
+        out.x.w = spacing * spacing * spacing / max(volume, 1e-20);
+#endif
     } else {
         let device = vec3(x.w, y.w, z.w) / w.w;
         // Device coordinates about the centre, to first order: rows of the map from the sphere.
@@ -221,10 +232,19 @@ fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     return out;
 }
 
-// The same in view space, for rays that may start inside: Haines' form about the point of the ray
-// that is closest to the centre (METHOD 3).
-fn intersect_near(in: EllipsoidVertex) -> Intersection {
-    var out: Intersection;
+// Where a ray passes an ellipsoid, in metres from the ray's start.
+struct Chord {
+    ray: Ray,
+    middle: f32,
+    half_length: f32,
+    // 1 − q² at the middle, for the distance q from the centre in the unit sphere's space; below
+    // 0 the ray misses.
+    disc: f32,
+}
+
+// In view space (form 1): Haines' form about the point of the ray that is closest to the centre
+// (METHOD 3).
+fn chord_of(in: EllipsoidVertex) -> Chord {
     let inverse = mat3x3(in.x.xyz, in.y.xyz, in.d.xyz);
     let ray = view_ray(ndc_from_pixel(in.position.xy));
     let closest = dot(in.center - ray.origin, ray.direction);
@@ -234,12 +254,19 @@ fn intersect_near(in: EllipsoidVertex) -> Intersection {
     let b = -dot(o, d);
     let nearest = o + (b / a) * d;
     let disc = 1.0 - dot(nearest, nearest);
-    let middle = closest + b / a;
-    let half_chord = sqrt(max(disc, 0.0) / a);
-    let t_front = middle - half_chord;
-    let t_back = middle + half_chord;
+    return Chord(ray, closest + b / a, sqrt(max(disc, 0.0) / a), disc);
+}
+
+// Both depths in view space, for rays that may start inside.
+fn intersect_near(in: EllipsoidVertex) -> Intersection {
+    var out: Intersection;
+    let inverse = mat3x3(in.x.xyz, in.y.xyz, in.d.xyz);
+    let chord = chord_of(in);
+    let ray = chord.ray;
+    let t_front = chord.middle - chord.half_length;
+    let t_back = chord.middle + chord.half_length;
     // Not behind the near plane altogether, and a number at all.
-    out.hit = disc >= 0.0 && t_back > 0.0;
+    out.hit = chord.disc >= 0.0 && t_back > 0.0;
 
     let back = ray.origin + t_back * ray.direction;
     out.layers.y = -clamp(device_from_view(back).z, 1e-30, 1.0);

@@ -10,7 +10,7 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_phase::TrackedRenderPass,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId, ColorWrites,
             CompareFunction, DepthStencilState, LoadOp, Operations, PipelineCache, PrimitiveState,
             PrimitiveTopology, RenderPassDepthStencilAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp,
@@ -37,6 +37,8 @@ use super::{
 pub(crate) enum SplatOutput {
     /// Both depths, by a `max` blend.
     Layers,
+    /// The nearest front alone, likewise.
+    Fronts,
     /// The nearest front, by the depth test.
     FrontDepth,
     /// The farthest back, by the depth test.
@@ -110,21 +112,30 @@ impl SpecializedRenderPipeline for SplatPipeline {
 
     fn specialize(&self, output: SplatOutput) -> RenderPipelineDescriptor {
         let shader_defs = defs([
-            ("MAX_BLEND", output == SplatOutput::Layers),
+            (
+                "MAX_BLEND",
+                matches!(output, SplatOutput::Layers | SplatOutput::Fronts),
+            ),
             ("DEPTH_FRONT", output == SplatOutput::FrontDepth),
             ("DEPTH_BACK", output == SplatOutput::BackDepth),
         ]);
         let (formats, compare): (&[_], _) = match output {
-            SplatOutput::Layers => (&[LAYER_FORMAT], None),
+            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], None),
             SplatOutput::FrontDepth => (&[], Some(CompareFunction::Greater)),
             SplatOutput::BackDepth => (&[], Some(CompareFunction::Less)),
         };
+        let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(MAX_BLEND));
+        if output == SplatOutput::Fronts {
+            for target in fragment.targets.iter_mut().flatten() {
+                target.write_mask = ColorWrites::RED;
+            }
+        }
         RenderPipelineDescriptor {
             label: Some("fluid_splat_pipeline".into()),
             layout: vec![common_layout(), self.fluid_layout.clone()],
             vertex: VertexState {
                 shader: self.shader.clone(),
-                shader_defs: shader_defs.clone(),
+                shader_defs,
                 entry_point: Some("vertex".into()),
                 buffers: vec![],
             },
@@ -136,12 +147,7 @@ impl SpecializedRenderPipeline for SplatPipeline {
                 stencil: default(),
                 bias: default(),
             }),
-            fragment: Some(fragment(
-                &self.shader,
-                shader_defs,
-                formats,
-                Some(MAX_BLEND),
-            )),
+            fragment: Some(fragment),
             ..default()
         }
     }
@@ -153,16 +159,18 @@ pub(crate) enum SplatPipelines {
     MaxBlend(CachedRenderPipelineId),
     DepthDraws {
         front: CachedRenderPipelineId,
-        back: CachedRenderPipelineId,
+        /// `None` where nothing is seen through the body.
+        back: Option<CachedRenderPipelineId>,
         merge: CachedRenderPipelineId,
     },
 }
 
-/// The two classes of splats, in the order they lie in the buffer.
+/// The two classes of splats that layers are made of, and all there are.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
     Bulk,
     Spray,
+    All,
 }
 
 /// Draws the splats of one class of all of a body's fluids.
@@ -183,6 +191,7 @@ pub(crate) fn draw_splats<'a>(
         let range = match class {
             Class::Bulk => fluid.bulk.clone(),
             Class::Spray => fluid.spray.clone(),
+            Class::All => 0..fluid.spray.end,
         };
         if !range.is_empty() {
             pass.set_bind_group(1, group, &[gpu.offset]);
@@ -245,7 +254,7 @@ impl ClassDraw<'_> {
                 self.draw(pass, pipeline, cache, fluids);
             }
             (SplatPipelines::DepthDraws { front, back, merge }, Some([near, far])) => {
-                for (texture, pipeline, clear) in [(near, front, 0.0), (far, back, 1.0)] {
+                for (texture, pipeline, clear) in [(near, Some(front), 0.0), (far, back, 1.0)] {
                     let pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
                         label: Some("fluid_splat_depth"),
                         depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
@@ -258,7 +267,10 @@ impl ClassDraw<'_> {
                         }),
                         ..default()
                     });
-                    self.draw(pass, pipeline, cache, fluids);
+                    // Cleared, but empty without a pipeline.
+                    if let Some(pipeline) = pipeline {
+                        self.draw(pass, pipeline, cache, fluids);
+                    }
                 }
                 self.merge(ctx, merge, cache);
             }

@@ -35,6 +35,7 @@ pub mod camera;
 pub mod ellipsoids;
 pub mod image;
 mod layers;
+pub mod medium;
 pub mod mesh;
 pub mod metrics;
 mod random;

@@ -1,0 +1,220 @@
+//! Materials that make no sense: what is said, and what is drawn.
+
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
+use thiserror::Error;
+
+use super::{FluidMaterial, Thickness};
+use crate::medium::MediumError;
+
+const REFRACTIVE_INDICES: [f32; 2] = [0.2, 5.0];
+const ROUGHNESSES: [f32; 2] = [0.03, 1.0];
+const SOFTNESSES: [f32; 2] = [0.0, 8.0];
+
+/// Why a material makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MaterialError {
+    /// A field of the medium is out of range.
+    #[error("`FluidMaterial::medium`: {0}")]
+    Medium(#[from] MediumError),
+    /// A field of the material itself is out of range.
+    #[error("`FluidMaterial::{field}` is {value}; it must be from {min} to {max}")]
+    Range {
+        /// Name of the field.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// Smallest value allowed.
+        min: f32,
+        /// Largest value allowed.
+        max: f32,
+    },
+}
+
+impl FluidMaterial {
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), MaterialError> {
+        self.medium.validate()?;
+        let softness = match self.thickness {
+            Thickness::Layers => 0.0,
+            Thickness::Accumulated { softness } => softness,
+        };
+        for (field, value, [min, max]) in [
+            (
+                "refractive_index",
+                self.refractive_index,
+                REFRACTIVE_INDICES,
+            ),
+            (
+                "perceptual_roughness",
+                self.perceptual_roughness,
+                ROUGHNESSES,
+            ),
+            ("thickness.softness", softness, SOFTNESSES),
+        ] {
+            // NaN is in no range.
+            if !(min..=max).contains(&value) {
+                return Err(MaterialError::Range {
+                    field,
+                    value,
+                    min,
+                    max,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The nearest material that makes sense: what is out of range is moved to its end, and
+    /// what is no number gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let within = |value: f32, [min, max]: [f32; 2], absent: f32| {
+            if value.is_nan() {
+                absent
+            } else {
+                value.clamp(min, max)
+            }
+        };
+        let default = Self::default();
+        Self {
+            refractive_index: within(
+                self.refractive_index,
+                REFRACTIVE_INDICES,
+                default.refractive_index,
+            ),
+            medium: self.medium.clamped(),
+            perceptual_roughness: within(
+                self.perceptual_roughness,
+                ROUGHNESSES,
+                default.perceptual_roughness,
+            ),
+            thickness: match self.thickness {
+                Thickness::Layers => Thickness::Layers,
+                Thickness::Accumulated { softness } => Thickness::Accumulated {
+                    softness: within(softness, SOFTNESSES, 1.0),
+                },
+            },
+        }
+    }
+}
+
+/// What has been said of whom: the same is not said again.
+#[derive(Default)]
+struct Complaints(EntityHashMap<MaterialError>);
+
+impl Complaints {
+    /// The error of a material, unless it has been said already.
+    fn of(&mut self, entity: Entity, material: &FluidMaterial) -> Option<MaterialError> {
+        let Err(error) = material.validate() else {
+            self.0.remove(&entity);
+            return None;
+        };
+        let before = self.0.insert(entity, error);
+        // By what they name: a number that is none never equals itself, and one that is
+        // animated out of range would be said every frame.
+        let same = before.is_some_and(|before| before.field() == error.field());
+        (!same).then_some(error)
+    }
+}
+
+impl MaterialError {
+    fn field(&self) -> &'static str {
+        match self {
+            Self::Medium(MediumError::Density { field, .. } | MediumError::Color { field, .. }) => {
+                field
+            }
+            Self::Medium(MediumError::Emission { .. }) => "emission",
+            Self::Range { field, .. } => field,
+        }
+    }
+}
+
+fn check_materials(
+    changed: Query<(Entity, &FluidMaterial), Changed<FluidMaterial>>,
+    mut gone: RemovedComponents<FluidMaterial>,
+    mut complaints: Local<Complaints>,
+) {
+    for entity in gone.read() {
+        complaints.0.remove(&entity);
+    }
+    for (entity, material) in &changed {
+        if let Some(error) = complaints.of(entity, material) {
+            warn!("fluid {entity}: {error}; it is drawn with the nearest value in range");
+        }
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(PostUpdate, check_materials);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_make_sense() {
+        for preset in [
+            FluidMaterial::WATER,
+            FluidMaterial::CLEAR_WATER,
+            FluidMaterial::INK,
+            FluidMaterial::MILK,
+            FluidMaterial::HONEY,
+            FluidMaterial::SMOKE,
+            FluidMaterial::FIRE,
+        ] {
+            assert_eq!(preset.validate(), Ok(()));
+            assert_eq!(preset.clamped(), preset);
+        }
+    }
+
+    #[test]
+    fn bad_fields_are_named_and_clamped() {
+        let cases: [(&str, fn(&mut FluidMaterial, f32)); 4] = [
+            ("FluidMaterial::refractive_index", |m, v| {
+                m.refractive_index = v
+            }),
+            ("FluidMaterial::perceptual_roughness", |m, v| {
+                m.perceptual_roughness = v
+            }),
+            ("FluidMaterial::thickness.softness", |m, v| {
+                m.thickness = Thickness::Accumulated { softness: v };
+            }),
+            ("FluidMaterial::medium`: `scattering_density", |m, v| {
+                m.medium.scattering_density = v;
+            }),
+        ];
+        for (field, set) in cases {
+            for value in [-1.0, f32::NAN, f32::INFINITY] {
+                let mut bad = FluidMaterial::SMOKE;
+                set(&mut bad, value);
+                let error = bad.validate().unwrap_err().to_string();
+                assert!(
+                    error.contains(field) && error.contains(&value.to_string()),
+                    "{error}"
+                );
+                assert_eq!(bad.clamped().validate(), Ok(()));
+            }
+        }
+    }
+
+    #[test]
+    fn a_complaint_is_made_once() {
+        let mut complaints = Complaints::default();
+        let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).unwrap());
+        let mut bad = FluidMaterial::WATER;
+        bad.medium.absorption_density = f32::NAN;
+        assert!(complaints.of(a, &bad).is_some());
+        assert!(complaints.of(a, &bad).is_none(), "said already");
+        bad.medium.absorption_density = -1.0;
+        assert!(complaints.of(a, &bad).is_none(), "of the same field");
+        assert!(complaints.of(b, &bad).is_some(), "another fluid");
+        bad.medium.absorption_density = 1.0;
+        assert!(complaints.of(a, &bad).is_none(), "mended");
+        bad.medium.absorption_density = -1.0;
+        assert!(complaints.of(a, &bad).is_some(), "bad again");
+    }
+}

@@ -1,0 +1,35 @@
+// The way of a pixel's ray through each splat, summed up by the blend.
+
+#import bevy_fluid::render::bindings::body
+#import bevy_fluid::render::functions::{nearest_scene_depth, ndc_from_pixel, view_from_device}
+#import bevy_fluid::render::splat::ellipsoid::{EllipsoidVertex, chord_of, place}
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) corner: u32,
+    @builtin(instance_index) splat: u32,
+) -> EllipsoidVertex {
+    return place(splat, corner);
+}
+
+@fragment
+fn fragment(in: EllipsoidVertex) -> @location(0) f32 {
+    let chord = chord_of(in);
+    // What lies behind an opaque thing is not passed.
+    var end = chord.middle + chord.half_length;
+    let scene = nearest_scene_depth(vec2<i32>(in.position.xy));
+    if scene > 0.0 {
+        let met = view_from_device(ndc_from_pixel(in.position.xy), scene);
+        end = min(end, dot(met - chord.ray.origin, chord.ray.direction));
+    }
+    let passed = end - max(chord.middle - chord.half_length, 0.0);
+    if chord.disc <= 0.0 || passed <= 0.0 {
+        discard;
+    }
+    // With q² = 1 − disc at the middle of the chord, the integral of (1 − q²)^s along it goes as
+    // disc^(s + 1/2). The factor keeps that over the whole splat, whatever s.
+    let s = body.softness;
+    let soft = pow(chord.disc, s) * (1.0 + 2.0 / 3.0 * s);
+    // The vertex stage leaves there how much more a particle holds than its splat.
+    return passed * soft * in.x.w;
+}
