@@ -37,6 +37,7 @@
 mod material;
 mod medium;
 mod particles;
+pub mod rain;
 pub mod render;
 mod schedule;
 mod settings;
@@ -48,6 +49,7 @@ pub use crate::{
     material::FluidMaterial,
     medium::Medium,
     particles::{FluidParticles, ShapedFluid},
+    rain::{Rain, RainPlugin},
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -60,8 +62,8 @@ pub use crate::{
 /// What most programs need.
 pub mod prelude {
     pub use crate::{
-        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ScreenSpaceFluid,
-        SurfaceKernel,
+        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, Rain, RainPlugin,
+        ScreenSpaceFluid, SurfaceKernel,
     };
 }
 
