@@ -141,7 +141,7 @@ fn rain_takes_as_much_light_as_its_drops() {
             app.world_mut()
                 .entity_mut(camera)
                 .insert(white_rain(rate, 10.0));
-            let depth = optical_depth(&mut app, 24);
+            let depth = optical_depth(&mut app, 40);
             let ratio = depth / (extinction(f64::from(rate)) * 10.0);
             println!("{rate} mm/h, 1/{:.0} s: {ratio:.4}", 1.0 / exposure);
             assert!(
@@ -156,10 +156,19 @@ fn rain_takes_as_much_light_as_its_drops() {
 fn drops_one_by_one_take_as_much() {
     let rain = Rain {
         method: RainMethod::PerDrop,
-        ..white_rain(10.0, 5.0)
+        ..white_rain(10.0, 4.0)
     };
-    let mut app = show_plain(rain);
-    let ratio = optical_depth(&mut app, 12) / (extinction(10.0) * 5.0);
+    // A narrow view: in a wide one the least drops are lost, each less than half a step of the
+    // 16-bit pixels that they are added to.
+    let view = View {
+        lens: Lens::Perspective {
+            fov: 0.15,
+            near: 0.05,
+        },
+        ..VIEW
+    };
+    let mut app = show(&view, rain, 1.0 / 60.0, |_| {});
+    let ratio = optical_depth(&mut app, 48) / (extinction(10.0) * 4.0);
     println!("{ratio:.4}");
     assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
 }
@@ -203,10 +212,11 @@ fn transparent_things_sort_between_the_voxels() {
     let camera = only::<Camera3d>(&mut app);
     let wall = spawn_black(app.world_mut(), AlphaMode::Blend);
     app.world_mut().entity_mut(camera).add_child(wall);
-    // Voxels are drawn before or after it as a whole.
+    // The rays' mean is 1.12 times that, and voxels, two thirds of a metre of them at a time, are
+    // drawn before or after it as a whole.
     let ratio = optical_depth(&mut app, 24) / (extinction(20.0) * 2.5);
     println!("{ratio:.4}");
-    assert!((0.8..1.4).contains(&ratio), "{ratio}");
+    assert!((0.85..1.4).contains(&ratio), "{ratio}");
 }
 
 /// A black wall across the view, 2.5 m ahead.
@@ -538,7 +548,8 @@ fn two_cameras_see_the_same_rain() {
     let first = only::<Camera3d>(&mut app);
     app.world_mut().entity_mut(first).insert(half(0));
     app.world_mut()
-        .spawn((camera(&VIEW, white_rain(50.0, 10.0)), half(80)));
+        .spawn(camera(&VIEW, white_rain(50.0, 10.0)))
+        .insert(half(80));
     settle(&mut app).unwrap();
     let image = picture(&mut app);
     let (mut lit, mut differ) = (0, 0);
@@ -559,7 +570,7 @@ fn sizes_and_samples_may_change() {
     for (size, msaa) in [
         (uvec2(1, 1), Msaa::Off),
         (uvec2(33, 7), Msaa::Sample4),
-        (uvec2(300, 200), Msaa::Sample2),
+        (uvec2(300, 200), Msaa::Off),
         (uvec2(160, 120), Msaa::Sample4),
     ] {
         resize(&mut app, size).unwrap();

@@ -27,17 +27,16 @@ struct Varying {
     @location(0) position: vec3<f32>,
     // Along the billboard, and up from its lower edge. Unit: m.
     @location(1) place: vec2<f32>,
-    @location(2) surroundings: vec3<f32>,
+    @location(2) light: vec3<f32>,
     // Of the billboard's plane, sideways.
     @location(3) @interpolate(flat) side: vec2<f32>,
-    @location(4) @interpolate(flat) size: f32,
-    @location(5) @interpolate(flat) radius: f32,
-    @location(6) @interpolate(flat) base: f32,
-    @location(7) @interpolate(flat) fraction: f32,
-    @location(8) @interpolate(flat) tile: i32,
-    @location(9) @interpolate(flat) hash: u32,
-    @location(10) @interpolate(flat) lamps: u32,
-    @location(11) @interpolate(flat) level: u32,
+    @location(4) @interpolate(flat) radius: f32,
+    @location(5) @interpolate(flat) base: f32,
+    @location(6) @interpolate(flat) fraction: f32,
+    @location(7) @interpolate(flat) tile: i32,
+    @location(8) @interpolate(flat) hash: u32,
+    @location(9) @interpolate(flat) lamps: u32,
+    @location(10) @interpolate(flat) level: u32,
 }
 
 // Opacities below this change no pixel.
@@ -55,9 +54,8 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Quad) -> Varying {
     out.position = quad.center + side * out.place.x
         + rain.axis / rain.axis.y * (at.y - 0.5 * quad.size);
     out.clip = clip_from_relative(out.position);
-    out.surroundings = surroundings(ray_to(out.position));
+    out.light = surroundings(ray_to(out.position));
     out.side = side.xz;
-    out.size = quad.size;
     out.radius = quad.radius;
     out.base = quad.base;
     out.fraction = quad.fraction;
@@ -71,11 +69,11 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Quad) -> Varying {
 // Opacity of a cubic voxel's drops, before what of it counts.
 fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
     var opacity = 0.0;
-    for (var class = 0u; class < CLASSES; class += 1u) {
-        let weights = rain.weights[in.level][class];
-        let drops = rain.classes[class];
+    for (var i = 0u; i < CLASSES; i += 1u) {
+        let weights = rain.weights[in.level][i];
+        let drops = rain.classes[i];
         // Every column has its own place in the textures, for each class.
-        let bits = in.hash >> (class * 5u);
+        let bits = in.hash >> (i * 5u);
         let across = in.place.x + f32(bits & 15u) / 16.0
             + dot(drops.lean, in.side) * (in.base + in.place.y);
         let up = in.place.y + in.fraction + drops.fallen;
@@ -85,7 +83,7 @@ fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
         let chance = (row * 0x9E3779B1u) ^ (u32(i32(tile.x)) * 0x85EBCA77u);
         let variant = ((chance >> 27u) ^ bits) % VARIANTS;
         let texel = textureSampleLevel(
-            streaks, streak_sampler, vec2(across, -up), class * VARIANTS + variant, mip,
+            streaks, streak_sampler, vec2(across, -up), i * VARIANTS + variant, mip,
         );
         opacity += dot(texel, weights);
     }
@@ -105,13 +103,13 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
     let end = min(min(level.end, rain.distance * steepness), scene);
-    let part = min(distance + 0.5 * in.size, end) - max(distance - 0.5 * in.size, level.start);
+    let part = min(distance + 0.5 * level.size, end) - max(distance - 0.5 * level.size, level.start);
     if part <= 0.0 {
         discard;
     }
     // Near the eye, fewer billboards are met at an angle than straight ahead.
     let facing = select(1.0, min(distance / in.radius, 4.0), rain.perspective == 1u);
-    let counts = part / in.size * facing * level.gain * rain.axis.y / steepness;
+    let counts = part / level.size * facing * level.gain * rain.axis.y / steepness;
 
     let texels = max(STREAK_TEXELS.x, STREAK_TEXELS.y / steepness);
     let mip = log2(max(texels / pixels_per_metre(view_depth), 1.0));
@@ -119,5 +117,5 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     if opacity < LEAST || is_sheltered(in.position) {
         discard;
     }
-    return over(in.surroundings + lamplight(in.position, ray, in.lamps), opacity);
+    return over(in.light + lamplight(in.position, ray, in.lamps), opacity);
 }

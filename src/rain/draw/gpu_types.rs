@@ -25,6 +25,7 @@ pub(crate) struct GpuRainClass {
 
 #[derive(Clone, Copy, Default, ShaderType)]
 pub(crate) struct GpuRainLevel {
+    pub(crate) size: f32,
     pub(crate) start: f32,
     pub(crate) end: f32,
     pub(crate) gain: f32,

@@ -11,6 +11,8 @@ struct GpuRainClass {
 }
 
 struct GpuRainLevel {
+    // Side of its voxels.
+    size: f32,
     // Distances from the eye, across the fall, that its voxels stand for.
     start: f32,
     end: f32,

@@ -63,7 +63,7 @@ impl RainQuads {
     pub(crate) fn cut_shells(&mut self, distance: f32, alone: bool) {
         self.shells.clear();
         let quads = self.instances.values();
-        let width = (distance / (MAX_SHELLS - 1) as f32).max(1.0);
+        let width = (distance / (MAX_SHELLS - 1) as f32).max(0.5);
         let index = |quad: &GpuQuad| {
             if alone {
                 0
@@ -160,6 +160,7 @@ impl GpuRain {
         }
         for (gpu, level) in gpu.levels.iter_mut().zip(LEVELS) {
             *gpu = GpuRainLevel {
+                size: level.size,
                 start: level.start,
                 end: level.end,
                 gain: level.gain(rain.distance),
