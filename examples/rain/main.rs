@@ -81,7 +81,7 @@ impl Scene {
     fn view(self) -> (Vec3, Vec3) {
         match self {
             Self::Headlights => (vec3(5.2, 1.5, 3.6), vec3(0.2, 0.7, -0.4)),
-            Self::Driver => (vec3(-3.6, 1.25, 0.35), vec3(4.0, 0.9, 0.3)),
+            Self::Driver => (vec3(-1.2, 1.35, 0.3), vec3(4.0, 0.75, 0.3)),
             Self::Lamp => (vec3(-1.5, 1.6, 6.5), vec3(-1.2, 2.0, -3.2)),
             Self::UnderLamp => (vec3(-2.4, 1.6, -0.9), vec3(-1.2, 3.6, -3.4)),
             Self::Day => (vec3(3.5, 1.7, 5.0), vec3(-0.8, 0.8, -2.0)),

@@ -2,9 +2,14 @@
 //! the units of real lamps.
 
 use bevy::{
+    asset::RenderAssetUsages,
     camera::{ClearColorConfig, Exposure},
+    image::ImageSampler,
     light::{EnvironmentMapLight, NotShadowCaster, Skybox},
     prelude::*,
+    render::render_resource::{
+        Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+    },
 };
 use bevy_fluid::{prelude::*, rain::RainShelter};
 use fluid_stage::scenery::Scenery;
@@ -18,13 +23,14 @@ const AHEAD: Vec3 = vec3(1.0, -0.06, 0.0);
 const FOUNTAIN: Vec3 = vec3(1.6, 0.0, -2.3);
 const BASIN: Vec3 = vec3(0.9, 0.22, 0.5);
 const RADIUS: f32 = 0.035;
+/// Texels along a face of the sky.
+const SKY_SIDE: u32 = 32;
 
 /// What lights the scene and what the camera needs for it.
 pub(crate) fn light(scenery: &mut Scenery, night: bool) -> impl Bundle + use<> {
-    let to_sun = vec3(0.2, 1.0, 0.3);
-    let sky = scenery.sky(to_sun);
-    // An overcast sky is what is left of a clear one below clouds; at night the town's glow.
-    let brightness = if night { 0.05 } else { 900.0 };
+    // At night the town's glow.
+    let brightness = if night { 0.03 } else { 1400.0 };
+    let sky = scenery.images.add(overcast());
     if night {
         lamps(scenery);
     }
@@ -33,18 +39,60 @@ pub(crate) fn light(scenery: &mut Scenery, night: bool) -> impl Bundle + use<> {
             ev100: if night { 2.0 } else { 9.5 },
         },
         Skybox {
+            image: Some(sky.clone()),
             brightness,
-            ..sky.skybox()
+            ..default()
         },
         EnvironmentMapLight {
+            diffuse_map: sky.clone(),
+            specular_map: sky,
             intensity: brightness,
-            ..sky.light()
+            ..default()
         },
         Camera {
             clear_color: ClearColorConfig::Custom(Color::BLACK),
             ..default()
         },
     )
+}
+
+/// An overcast sky as the CIE has it, three times as bright above as at the horizon, over grey
+/// ground. So smooth that it serves as its own blur.
+fn overcast() -> Image {
+    let mut texels = Vec::new();
+    for face in 0..6 {
+        for texel in 0..SKY_SIDE * SKY_SIDE {
+            let at = |i: u32| 2.0 * (i as f32 + 0.5) / SKY_SIDE as f32 - 1.0;
+            let (across, down) = (at(texel % SKY_SIDE), at(texel / SKY_SIDE));
+            let up = match face {
+                2 => 1.0,
+                3 => -1.0,
+                _ => -down,
+            } / (1.0 + across * across + down * down).sqrt();
+            let sky = (1.0 + 2.0 * up.max(0.0)) / 3.0;
+            let gray = sky.lerp(0.12, ((0.1 - up) / 0.2).clamp(0.0, 1.0));
+            for channel in [0.95, 0.98, 1.0, 1.0 / gray] {
+                texels.extend(((gray * channel * 255.0).round() as u8).to_le_bytes());
+            }
+        }
+    }
+    let mut image = Image::new(
+        Extent3d {
+            width: SKY_SIDE,
+            height: SKY_SIDE,
+            depth_or_array_layers: 6,
+        },
+        TextureDimension::D2,
+        texels,
+        TextureFormat::Rgba8Unorm,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::Cube),
+        ..default()
+    });
+    image.sampler = ImageSampler::linear();
+    image
 }
 
 fn lamps(scenery: &mut Scenery) {

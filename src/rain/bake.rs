@@ -20,7 +20,7 @@ use bevy::{
 };
 
 use super::{
-    classes::CLASSES,
+    classes::{CLASSES, FINE},
     settings::{Rain, RainStreaks},
     streaks::{HEIGHT, LAYERS, MIP_LEVELS, StreakClass, StreakInput, Streaks, WIDTH, bake},
 };
@@ -52,12 +52,9 @@ pub(crate) struct ReadyStreaks {
 }
 
 impl ReadyStreaks {
-    /// The speed about which the classes' speeds lie, each weighted by the light it takes.
+    /// The speed about which the classes' speeds lie. Unit: m/s.
     pub(crate) fn mean_speed(&self) -> f64 {
-        // The second density is that of common rain.
-        let weight = |class: &StreakClass| class.extinction[1];
-        let sum: f64 = self.classes.iter().map(|c| weight(c) * c.speed).sum();
-        sum / self.classes.iter().map(weight).sum::<f64>()
+        self.classes[FINE].speed
     }
 }
 
@@ -181,7 +178,8 @@ fn image(texels: Vec<u8>) -> Image {
         address_mode_v: ImageAddressMode::Repeat,
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
-        mipmap_filter: ImageFilterMode::Linear,
+        // A level's voxels are all about as far away: one mip level does, for half the cost.
+        mipmap_filter: ImageFilterMode::Nearest,
         ..default()
     });
     image

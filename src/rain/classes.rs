@@ -1,13 +1,16 @@
 //! Drops in classes by diameter: those of a class share their textures and the speed they fall at.
+//! Near the eye there are [`FINE`] of them; farther off one class holds all drops.
 
 use bevy::prelude::*;
 
 use super::drops::{DragLaw, LARGEST, SMALLEST, count, density, extinction_between};
 
-/// How many classes there are.
-pub const CLASSES: usize = 6;
+/// How many classes drops are told apart by near the eye. Each costs a texture lookup a voxel.
+pub const FINE: usize = 4;
+/// These, and one with all drops, which is the last.
+pub const CLASSES: usize = FINE + 1;
 /// Borders between the classes. Unit: mm.
-const BORDERS: [f64; CLASSES - 1] = [0.5, 1.0, 1.5, 2.0, 3.0];
+const BORDERS: [f64; FINE - 1] = [0.8, 1.4, 2.2];
 /// How many densities of drops a texture holds, one in each channel.
 pub const DENSITIES: usize = 4;
 /// The rain rates whose drops in one metre of depth are those densities. Unit: mm/h.
@@ -18,17 +21,21 @@ const TYPICAL_RATE: f64 = 10.0;
 /// A range of diameters. Unit: mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Class {
-    /// The diameters for which it stands: all classes together hold all drops.
+    /// The diameters for which it stands: the fine classes together hold all drops.
     pub low: f64,
     /// May be infinite.
     pub high: f64,
 }
 
 impl Class {
-    /// All classes, small drops first.
+    /// All classes: the fine ones, small drops first, and that of all drops.
     pub fn all() -> [Self; CLASSES] {
         core::array::from_fn(|i| Self {
-            low: if i == 0 { 0.0 } else { BORDERS[i - 1] },
+            low: if i == 0 || i == FINE {
+                0.0
+            } else {
+                BORDERS[i - 1]
+            },
             high: BORDERS.get(i).copied().unwrap_or(f64::INFINITY),
         })
     }
@@ -100,10 +107,13 @@ mod tests {
     #[test]
     fn classes_together_hold_all_drops() {
         for rate in [1.0, 10.0, 100.0] {
-            let sum: f64 = Class::all().iter().map(|c| c.extinction(rate)).sum();
+            let sum: f64 = Class::all()[..FINE]
+                .iter()
+                .map(|c| c.extinction(rate))
+                .sum();
             assert!((sum / extinction(rate) - 1.0).abs() < 1e-9);
             // What is drawn of it, so far as the drawn diameters go.
-            let drawn: f64 = Class::all().iter().map(|c| c.count(rate)).sum();
+            let drawn: f64 = Class::all()[..FINE].iter().map(|c| c.count(rate)).sum();
             assert!((drawn / count(rate, SMALLEST, LARGEST) - 1.0).abs() < 1e-9);
             let taken = extinction_between(rate, SMALLEST, LARGEST);
             assert!(taken / extinction(rate) > 0.99, "{rate} mm/h");
@@ -114,7 +124,8 @@ mod tests {
     fn larger_drops_fall_faster() {
         for law in [DragLaw::GunnKinzer, DragLaw::RigidSphere] {
             let speeds = Class::all().map(|c| c.speed(law));
-            assert!(speeds.is_sorted() && speeds[0] > 0.5, "{speeds:?}");
+            assert!(speeds[..FINE].is_sorted() && speeds[0] > 0.5, "{speeds:?}");
+            assert!(speeds[0] < speeds[FINE] && speeds[FINE] < speeds[FINE - 1]);
         }
     }
 

@@ -20,7 +20,7 @@ pub struct Rain {
     pub rate: f32,
     /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
     /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
-    /// grows with its logarithm beyond 4 m.
+    /// grows with its logarithm beyond 3 m.
     pub distance: f32,
     /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
     /// here. Unit: m, range 0..=100,000, default 500.

@@ -4,7 +4,7 @@
     clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
     scene_view_depth, streak_sampler, streaks, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::{CLASSES, STREAK_TEXELS, VARIANTS}
+#import bevy_fluid::rain::draw::types::{CLASSES, MERGED_FROM, STREAK_TEXELS, VARIANTS}
 
 struct Quad {
     @location(0) center: vec3<f32>,
@@ -69,7 +69,9 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Quad) -> Varying {
 // Opacity of a cubic voxel's drops, before what of it counts.
 fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
     var opacity = 0.0;
-    for (var i = 0u; i < CLASSES; i += 1u) {
+    let merged = in.level >= MERGED_FROM;
+    let end = select(CLASSES - 1u, CLASSES, merged);
+    for (var i = select(0u, CLASSES - 1u, merged); i < end; i += 1u) {
         let weights = rain.weights[in.level][i];
         let drops = rain.classes[i];
         // Every column has its own place in the textures, for each class.

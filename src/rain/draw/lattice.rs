@@ -20,14 +20,15 @@ const fn level(size: f32, start: f32, end: f32) -> Level {
     Level { size, start, end }
 }
 
-/// Small voxels near the eye, where their lack of depth would show.
+/// Small voxels near the eye, where their lack of depth would show. From the third on, all drops
+/// fall together (`MERGED_FROM` of `types.wgsl`): their streaks are a pixel wide.
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
     level(0.5, 0.0, 1.0),
-    level(1.0, 1.0, 4.0),
-    level(2.0, 4.0, 12.0),
-    level(4.0, 12.0, 28.0),
-    level(8.0, 28.0, 60.0),
-    level(16.0, 60.0, 124.0),
+    level(1.0, 1.0, 3.0),
+    level(2.0, 3.0, 9.0),
+    level(4.0, 9.0, 21.0),
+    level(8.0, 21.0, 45.0),
+    level(16.0, 45.0, 125.0),
 ];
 
 impl Level {

@@ -73,16 +73,18 @@ struct GpuRain {
     largest: f32,
     // Terminal speeds by diameter, in steps of SPEED_STEP.
     speeds: array<vec4<f32>, 16>,
-    classes: array<GpuRainClass, 6>,
+    classes: array<GpuRainClass, 5>,
     // Of each level's classes: what of the four densities makes up a voxel.
-    weights: array<array<vec4<f32>, 6>, 6>,
+    weights: array<array<vec4<f32>, 5>, 6>,
     levels: array<GpuRainLevel, 6>,
     lights: array<GpuRainLight, 32>,
     suns: array<GpuRainSun, 4>,
     shelters: array<GpuShelter, 8>,
 }
 
-const CLASSES: u32 = 6u;
+// Classes of diameters, the last with all drops: that is what levels from a certain one on show.
+const CLASSES: u32 = 5u;
+const MERGED_FROM: u32 = 2u;
 const VARIANTS: u32 = 4u;
 // Texels along a metre, across the fall and along it.
 const STREAK_TEXELS: vec2<f32> = vec2(512.0, 256.0);
