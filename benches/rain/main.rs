@@ -76,6 +76,7 @@ fn plan(quick: bool) -> Vec<(UVec2, Vec<Case>)> {
         .into_iter()
         .flat_map(|distance| [1.0, 5.0, 10.0, 20.0].map(|rate| case(rate, distance)));
     vec![
+        (uvec2(320, 180), vec![case(10.0, 5.0), case(10.0, 10.0)]),
         (uvec2(640, 360), all.collect()),
         (uvec2(1280, 720), vec![case(10.0, 5.0), case(10.0, 10.0)]),
     ]

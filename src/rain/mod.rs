@@ -23,7 +23,7 @@
 //!   ([`drops::extinction`]) whatever the exposure.
 //! - A column of falling billboards is one standing billboard whose textures fall, each at its own
 //!   speed: all diameters in one draw of one layer.
-//! - Voxels are half a metre wide near the eye, and from 3 m on twice as wide each time the distance
+//! - Voxels are half a metre wide near the eye, and from 2 m on twice as wide each time the distance
 //!   doubles: the cost grows with the logarithm of the distance. There, where a streak is a pixel
 //!   wide, drops of all diameters fall together.
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any

@@ -10,7 +10,7 @@ use super::{
 
 /// Makes a camera see rain. Values that make no sense are clamped and said once.
 ///
-/// Cameras with equal settings see the same drops.
+/// Cameras with equal settings that began together see the same drops.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Hdr, RainClock)]
@@ -20,7 +20,7 @@ pub struct Rain {
     pub rate: f32,
     /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
     /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
-    /// grows with its logarithm beyond 3 m.
+    /// grows with its logarithm beyond 2 m.
     pub distance: f32,
     /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
     /// here. Unit: m, range 0..=100,000, default 500.

@@ -24,11 +24,11 @@ const fn level(size: f32, start: f32, end: f32) -> Level {
 /// fall together (`MERGED_FROM` of `types.wgsl`): their streaks are a pixel wide.
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
     level(0.5, 0.0, 1.0),
-    level(1.0, 1.0, 3.0),
-    level(2.0, 3.0, 9.0),
-    level(4.0, 9.0, 21.0),
-    level(8.0, 21.0, 45.0),
-    level(16.0, 45.0, 125.0),
+    level(1.0, 1.0, 2.0),
+    level(2.0, 2.0, 6.0),
+    level(4.0, 6.0, 14.0),
+    level(8.0, 14.0, 30.0),
+    level(16.0, 30.0, 126.0),
 ];
 
 impl Level {
