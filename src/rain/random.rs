@@ -32,7 +32,7 @@ impl Random {
 
     /// A whole number in 0..`end`.
     pub(crate) fn below(&mut self, end: usize) -> usize {
-        ((self.next() >> 32) * end as u64 >> 32) as usize
+        (((self.next() >> 32) * end as u64) >> 32) as usize
     }
 
     /// A whole number whose mean is `mean`: one of its two neighbours.
