@@ -58,8 +58,7 @@ fn the_mean_opacity_is_the_cross_section_of_the_drops_at_every_size_and_exposure
                     let slack = 0.001 * wanted + 0.5 * step / (width * height) as f64;
                     assert!(
                         (mean - wanted).abs() <= slack,
-                        "class {class}, density {density}, mip {mip}: {mean}, {}",
-                        wanted
+                        "class {class}, density {density}, mip {mip}: {mean}, {wanted}"
                     );
                 }
             }
