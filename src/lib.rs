@@ -40,6 +40,7 @@
 mod material;
 mod medium;
 mod particles;
+pub mod rain;
 pub mod render;
 mod schedule;
 mod settings;
@@ -51,6 +52,7 @@ pub use crate::{
     material::{FluidMaterial, MaterialError, Thickness},
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
+    rain::{Rain, RainPlugin},
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -63,8 +65,8 @@ pub use crate::{
 /// What most programs need.
 pub mod prelude {
     pub use crate::{
-        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ScreenSpaceFluid,
-        SurfaceKernel, Thickness,
+        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, Rain, RainPlugin,
+        ScreenSpaceFluid, SurfaceKernel, Thickness,
     };
 }
 

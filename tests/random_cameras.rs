@@ -6,7 +6,7 @@ mod common;
 use std::cell::{Cell, RefCell};
 
 use bevy::{camera::CameraProjection, prelude::*};
-use bevy_fluid::{SurfaceKernel, prelude::*, render::Layers};
+use bevy_fluid::{SurfaceKernel, render::Layers};
 use common::*;
 use proptest::{prelude::*, test_runner::TestRunner};
 

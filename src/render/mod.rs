@@ -4,7 +4,7 @@ mod bind_groups;
 mod bindings;
 mod bodies;
 mod bounds;
-mod composite;
+pub(crate) mod composite;
 mod exit;
 mod extract;
 mod gpu_types;

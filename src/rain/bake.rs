@@ -1,0 +1,186 @@
+//! Keeps the textures of streaks as the settings want them, without holding up a frame.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    },
+    time::Instant,
+};
+
+use bevy::{
+    asset::RenderAssetUsages,
+    diagnostic::{DiagnosticPath, Diagnostics},
+    image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    prelude::*,
+    render::render_resource::{
+        Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+    },
+    tasks::{AsyncComputeTaskPool, Task, block_on, futures::check_ready},
+};
+
+use super::{
+    classes::{CLASSES, FINE},
+    settings::{Rain, RainStreaks},
+    streaks::{HEIGHT, LAYERS, MIP_LEVELS, StreakClass, StreakInput, Streaks, WIDTH, bake},
+};
+
+/// How much of the textures is drawn, 0 to 1.
+pub const BAKE_PROGRESS: DiagnosticPath = DiagnosticPath::const_new("rain/bake_progress");
+/// How long it took to draw all textures. Unit: ms.
+pub const BAKE_TIME: DiagnosticPath = DiagnosticPath::const_new("rain/bake_time");
+
+/// Whether apps wait for the textures.
+#[derive(Resource, Clone, Copy)]
+pub(crate) struct SynchronousBake(pub(crate) bool);
+
+/// The textures of streaks that are there, and those that are being drawn.
+#[derive(Resource, Default)]
+pub struct BakedStreaks {
+    ready: Option<ReadyStreaks>,
+    running: Option<RunningBake>,
+    /// Smoothed length of a frame. Unit: s.
+    frame: Option<f32>,
+}
+
+/// Textures of streaks, and how to read them.
+#[derive(Clone, Debug)]
+pub(crate) struct ReadyStreaks {
+    pub(crate) image: Handle<Image>,
+    pub(crate) input: StreakInput,
+    pub(crate) classes: [StreakClass; CLASSES],
+}
+
+impl ReadyStreaks {
+    /// The speed about which the classes' speeds lie. Unit: m/s.
+    pub(crate) fn mean_speed(&self) -> f64 {
+        self.classes[FINE].speed
+    }
+}
+
+struct RunningBake {
+    input: StreakInput,
+    done: Arc<AtomicU32>,
+    start: Instant,
+    task: Task<Streaks>,
+}
+
+impl BakedStreaks {
+    /// Whether textures are there and no others are being drawn.
+    pub fn is_settled(&self) -> bool {
+        self.ready.is_some() && self.running.is_none()
+    }
+
+    /// The exposure of the textures that are there. Unit: s.
+    pub fn exposure(&self) -> Option<f32> {
+        Some(self.ready.as_ref()?.input.exposure)
+    }
+
+    pub(crate) fn ready(&self) -> Option<&ReadyStreaks> {
+        self.ready.as_ref()
+    }
+}
+
+pub(crate) fn bake_streaks(
+    rains: Query<&Rain>,
+    settings: Res<RainStreaks>,
+    synchronous: Res<SynchronousBake>,
+    time: Res<Time>,
+    mut streaks: ResMut<BakedStreaks>,
+    mut images: ResMut<Assets<Image>>,
+    mut diagnostics: Diagnostics,
+) {
+    // Whoever has no rain gets no textures.
+    if rains.is_empty() && streaks.running.is_none() {
+        return;
+    }
+    let delta = time.delta_secs();
+    if delta > 0.0 {
+        let frame = streaks.frame.unwrap_or(delta);
+        streaks.frame = Some(frame + 0.1 * (delta - frame));
+    }
+    if streaks.running.is_none() {
+        let ready = streaks.ready.as_ref().map(|ready| ready.input);
+        let current = ready.map(|input| input.exposure);
+        let wanted = StreakInput {
+            exposure: settings.exposure.seconds(streaks.frame, current),
+            law: settings.law,
+            seed: settings.seed,
+        };
+        if ready == Some(wanted) {
+            return;
+        }
+        streaks.running = Some(start(wanted));
+    }
+    let Some(mut running) = streaks.running.take() else {
+        return;
+    };
+    let finished = if synchronous.0 {
+        Some(block_on(&mut running.task))
+    } else {
+        check_ready(&mut running.task)
+    };
+    let done = running.done.load(Ordering::Relaxed) as f64 / LAYERS as f64;
+    diagnostics.add_measurement(&BAKE_PROGRESS, || done);
+    let Some(baked) = finished else {
+        streaks.running = Some(running);
+        return;
+    };
+    diagnostics.add_measurement(&BAKE_TIME, || running.start.elapsed().as_secs_f64() * 1e3);
+    streaks.ready = Some(ReadyStreaks {
+        classes: baked.classes,
+        image: images.add(image(baked.texels)),
+        input: running.input,
+    });
+}
+
+fn start(input: StreakInput) -> RunningBake {
+    let done = Arc::new(AtomicU32::new(0));
+    let counter = done.clone();
+    let task = AsyncComputeTaskPool::get().spawn(async move {
+        // Threads of its own: on the common ones a frame's work would queue behind this.
+        match rayon::ThreadPoolBuilder::new()
+            .thread_name(|i| format!("rain streaks {i}"))
+            .build()
+        {
+            Ok(pool) => pool.install(|| bake(&input, &counter)),
+            Err(_) => bake(&input, &counter),
+        }
+    });
+    RunningBake {
+        input,
+        done,
+        start: Instant::now(),
+        task,
+    }
+}
+
+fn image(texels: Vec<u8>) -> Image {
+    let mut image = Image::new_uninit(
+        Extent3d {
+            width: WIDTH as u32,
+            height: HEIGHT as u32,
+            depth_or_array_layers: LAYERS as u32,
+        },
+        TextureDimension::D2,
+        TextureFormat::Rgba8Unorm,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.texture_descriptor.label = Some("rain_streaks");
+    image.texture_descriptor.mip_level_count = MIP_LEVELS;
+    image.data = Some(texels);
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2Array),
+        ..default()
+    });
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        mag_filter: ImageFilterMode::Linear,
+        min_filter: ImageFilterMode::Linear,
+        // A level's voxels are all about as far away: one mip level does, for half the cost.
+        mipmap_filter: ImageFilterMode::Nearest,
+        ..default()
+    });
+    image
+}

@@ -1,0 +1,121 @@
+//! How far drops have fallen.
+
+use bevy::{math::DVec2, prelude::*};
+
+use super::{bake::BakedStreaks, classes::CLASSES, settings::Rain};
+
+/// Where a camera moves this far up or down, the height is changed about which wind shears drops.
+/// Unit: m.
+const REACH: f64 = 32.0;
+
+/// The state of a camera's rain. It moves with `Time`, and so that a change of settings or a jump of
+/// the camera never makes drops jump that were in sight.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+pub struct RainClock {
+    /// How far each class has fallen. Unit: m.
+    pub(crate) fallen: [f64; CLASSES],
+    /// Unit: s.
+    pub(crate) seconds: f64,
+    /// How far drops of mean speed go sideways (x, z) while they fall a metre.
+    pub(crate) lean: Vec2,
+    /// Where columns of drops stand at `height`, on top of their places in the lattice. Unit: m.
+    pub(crate) anchor: DVec2,
+    /// Unit: m.
+    pub(crate) height: f64,
+}
+
+impl RainClock {
+    pub(crate) fn advance(
+        &mut self,
+        seconds: f64,
+        wind: Vec2,
+        speeds: [f64; CLASSES],
+        mean_speed: f64,
+        camera_height: f64,
+    ) {
+        self.seconds += seconds;
+        for (fallen, speed) in self.fallen.iter_mut().zip(speeds) {
+            *fallen += speed * seconds;
+        }
+        let lean = wind / mean_speed.max(0.1) as f32;
+        if (camera_height - self.height).abs() > REACH && camera_height.is_finite() {
+            self.anchor -= self.lean.as_dvec2() * (camera_height - self.height);
+            self.height = camera_height;
+        }
+        // At the camera's height, columns stay where they are.
+        self.anchor += (lean - self.lean).as_dvec2() * (camera_height - self.height);
+        self.lean = lean;
+    }
+}
+
+pub(crate) fn advance_clocks(
+    mut cameras: Query<(&Rain, &GlobalTransform, &mut RainClock)>,
+    streaks: Res<BakedStreaks>,
+    time: Res<Time>,
+) {
+    let Some(ready) = streaks.ready() else {
+        return;
+    };
+    for (rain, transform, mut clock) in &mut cameras {
+        let (rain, sane) = rain.sane();
+        if !sane {
+            bevy::utils::once!(warn!(
+                "a `Rain` has settings out of their range: they are clamped"
+            ));
+        }
+        clock.advance(
+            time.delta_secs_f64(),
+            rain.wind,
+            ready.classes.map(|class| class.speed),
+            ready.mean_speed(),
+            f64::from(transform.translation().y),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a column stands at some height.
+    fn place(clock: &RainClock, height: f64) -> DVec2 {
+        clock.anchor - clock.lean.as_dvec2() * (height - clock.height)
+    }
+
+    #[test]
+    fn drops_fall_at_their_own_speed() {
+        let mut clock = RainClock::default();
+        let speeds = core::array::from_fn(|i| 1.0 + i as f64);
+        for _ in 0..60 {
+            clock.advance(1.0 / 60.0, Vec2::ZERO, speeds, 5.0, 0.0);
+        }
+        for (fallen, speed) in clock.fallen.iter().zip(speeds) {
+            assert!((fallen - speed).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_change_of_wind_moves_no_column_before_the_camera() {
+        let mut clock = RainClock::default();
+        for (height, winds) in [
+            (20.0, [vec2(3.0, 0.0), vec2(-4.0, 2.0)]),
+            (900.0, [vec2(1.0, 1.0), vec2(0.0, 5.0)]),
+        ] {
+            clock.advance(0.0, clock.lean * 5.0, [1.0; CLASSES], 5.0, height);
+            let before = place(&clock, height);
+            for wind in winds {
+                clock.advance(0.0, wind, [1.0; CLASSES], 5.0, height);
+                assert!((place(&clock, height) - before).length() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn a_jump_of_the_camera_moves_no_column() {
+        let mut clock = RainClock::default();
+        clock.advance(0.0, vec2(5.0, -2.0), [1.0; CLASSES], 5.0, 0.0);
+        let before = place(&clock, 1000.0);
+        clock.advance(0.0, vec2(5.0, -2.0), [1.0; CLASSES], 5.0, 1000.0);
+        assert!((place(&clock, 1000.0) - before).length() < 1e-4);
+    }
+}

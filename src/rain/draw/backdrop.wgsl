@@ -1,0 +1,31 @@
+// What rain beyond the streaks takes from the scene behind it, and what it sends.
+
+#import bevy_fluid::rain::draw::common::{over, rain, scene_view_depth, surroundings, view}
+#import bevy_render::view::frag_coord_to_ndc
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let uv = vec2(f32((index << 1u) & 2u), f32(index & 2u));
+    return vec4(uv * 2.0 - 1.0, 1.0, 1.0);
+}
+
+fn view_ray(pixel: vec2<f32>) -> vec3<f32> {
+    if rain.perspective == 0u {
+        return rain.forward;
+    }
+    let ndc = frag_coord_to_ndc(vec4(pixel, 0.0, 1.0), view.main_pass_viewport).xy;
+    let point = view.view_from_clip * vec4(ndc, 1.0, 1.0);
+    return normalize((view.world_from_view * vec4(point.xyz / point.w, 0.0)).xyz);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let ray = view_ray(position.xy);
+    let scene = scene_view_depth(position.xy) / max(dot(ray, rain.forward), 1e-4);
+    let way = clamp(scene, rain.distance, max(rain.extent, rain.distance)) - rain.distance;
+    let opacity = 1.0 - exp(-rain.extinction * way);
+    if opacity <= 0.0 {
+        discard;
+    }
+    return over(surroundings(ray), opacity);
+}

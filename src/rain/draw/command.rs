@@ -1,0 +1,91 @@
+//! What happens while Bevy draws the view.
+
+use bevy::{
+    core_pipeline::core_3d::Transparent3d,
+    ecs::{
+        query::ROQueryItem,
+        system::{
+            SystemParamItem,
+            lifetimeless::{Read, SRes},
+        },
+    },
+    render::{
+        camera::ExtractedCamera,
+        diagnostic::RecordDiagnostics,
+        render_phase::{
+            PhaseItem, PhaseItemExtraIndex, RenderCommand, RenderCommandResult, SetItemPipeline,
+            TrackedRenderPass,
+        },
+        render_resource::IndexFormat,
+        renderer::{RenderContext, ViewQuery},
+        view::ViewDepthTexture,
+    },
+};
+
+use super::{
+    prepare::RainBuffers,
+    view::{MAX_SHELLS, RainQuads},
+};
+
+/// The scene's depth with the liquids in it, before transparent things are drawn.
+pub(crate) fn copy_scene_depth(
+    view: ViewQuery<(&RainQuads, &ViewDepthTexture, &ExtractedCamera)>,
+    mut ctx: RenderContext,
+) {
+    let (quads, depth, _) = view.into_inner();
+    let (Some(copy), Some(_)) = (&quads.depth, &quads.bind_group) else {
+        return;
+    };
+    let recorder = ctx.diagnostic_recorder();
+    let recorder = recorder.as_deref();
+    let span = recorder.time_span(ctx.command_encoder(), "rain_scene_depth");
+    ctx.command_encoder().copy_texture_to_texture(
+        depth.texture.as_image_copy(),
+        copy.texture.as_image_copy(),
+        depth.texture.size(),
+    );
+    span.end(ctx.command_encoder());
+}
+
+pub(crate) type DrawRain = (SetItemPipeline, DrawShell);
+
+/// One shell of voxels, or the backdrop.
+pub(crate) struct DrawShell;
+
+impl RenderCommand<Transparent3d> for DrawShell {
+    type Param = SRes<RainBuffers>;
+    type ViewQuery = Read<RainQuads>;
+    type ItemQuery = ();
+
+    fn render<'w>(
+        item: &Transparent3d,
+        quads: ROQueryItem<'w, '_, Self::ViewQuery>,
+        _: Option<()>,
+        buffers: SystemParamItem<'w, '_, Self::Param>,
+        pass: &mut TrackedRenderPass<'w>,
+    ) -> RenderCommandResult {
+        let (PhaseItemExtraIndex::DynamicOffset(slot), Some(group)) =
+            (item.extra_index(), &quads.bind_group)
+        else {
+            return RenderCommandResult::Skip;
+        };
+        pass.set_bind_group(0, group, &[quads.view_offset, quads.uniform_offset]);
+        if slot as usize == MAX_SHELLS {
+            pass.draw(0..3, 0..1);
+            return RenderCommandResult::Success;
+        }
+        let (Some(shell), Some(instances)) =
+            (quads.shells.get(slot as usize), quads.instances.buffer())
+        else {
+            return RenderCommandResult::Skip;
+        };
+        pass.set_vertex_buffer(0, instances.slice(..));
+        if quads.drop_indices == 0 {
+            pass.draw(0..4, shell.instances.clone());
+        } else if let Some(indices) = &buffers.into_inner().drop_indices {
+            pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+            pass.draw_indexed(0..quads.drop_indices, 0, shell.instances.clone());
+        }
+        RenderCommandResult::Success
+    }
+}

@@ -1,0 +1,120 @@
+// What all that is drawn of rain sees, and the light on it.
+#define_import_path bevy_fluid::rain::draw::common
+
+#import bevy_fluid::rain::draw::types::GpuRain
+#import bevy_render::view::{View, frag_coord_to_ndc}
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<uniform> rain: GpuRain;
+#ifdef MULTISAMPLED
+@group(0) @binding(2) var scene_depth: texture_depth_multisampled_2d;
+#else
+@group(0) @binding(2) var scene_depth: texture_depth_2d;
+#endif
+@group(0) @binding(3) var environment_map: texture_cube<f32>;
+@group(0) @binding(4) var environment_sampler: sampler;
+@group(0) @binding(5) var streaks: texture_2d_array<f32>;
+@group(0) @binding(6) var streak_sampler: sampler;
+
+const PI: f32 = 3.14159265;
+// Farther than any scene.
+const FAR: f32 = 1e9;
+
+// Twin of `phase` in `phase.rs`.
+fn phase(cosine: f32) -> f32 {
+    let even = (1.0 - 0.93 - 0.045) / (4.0 * PI);
+    let ahead = 0.93 * 7.4 / (2.0 * PI) * exp(7.4 * (cosine - 1.0));
+    let off = (cosine + 0.79) / 0.12;
+    let bow = 0.045 / (2.0 * PI * 0.12 * sqrt(PI)) * exp(-off * off);
+    return even + ahead + bow;
+}
+
+// From relative positions to the screen, without the world's large numbers.
+fn clip_from_relative(position: vec3<f32>) -> vec4<f32> {
+    return view.clip_from_view * vec4((view.view_from_world * vec4(position, 0.0)).xyz, 1.0);
+}
+
+// The direction from the eye to a position, of unit length.
+fn ray_to(position: vec3<f32>) -> vec3<f32> {
+    return select(rain.forward, normalize(position), rain.perspective == 1u);
+}
+
+// View depth (positive forward) of the opaque scene and of liquids.
+fn scene_view_depth(pixel: vec2<f32>) -> f32 {
+    let depth = textureLoad(scene_depth, vec2<i32>(pixel), 0);
+    if rain.perspective == 1u && depth <= 0.0 {
+        return FAR;
+    }
+    let ndc = frag_coord_to_ndc(vec4(pixel, depth, 1.0), view.main_pass_viewport);
+    let position = view.view_from_clip * vec4(ndc, 1.0);
+    return -position.z / position.w;
+}
+
+// How many pixels a metre across the view spans.
+fn pixels_per_metre(view_depth: f32) -> f32 {
+    let focal = 0.5 * view.main_pass_viewport.w * abs(view.clip_from_view[1][1]);
+    return select(focal, focal / max(view_depth, 1e-4), rain.perspective == 1u);
+}
+
+fn environment(direction: vec3<f32>) -> vec3<f32> {
+    let level = f32(textureNumLevels(environment_map) - 1u);
+    let to_map = rain.environment_from_world * direction;
+    return textureSampleLevel(environment_map, environment_sampler, to_map, level).rgb;
+}
+
+// Radiance of drops in what comes from all around: mostly what lies behind them.
+fn surroundings(direction: vec3<f32>) -> vec3<f32> {
+    var light = rain.ambient;
+    if rain.environment_intensity > 0.0 {
+        light += rain.environment_intensity * environment(direction);
+    }
+    return light;
+}
+
+// Radiance of drops at a position in the light of lamps and suns: what a surface that faces them
+// would receive, times the phase function. Falloff, cone and range are Bevy's.
+fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
+    var light = vec3(0.0);
+    for (var i = 0u; i < rain.sun_count; i += 1u) {
+        light += rain.suns[i].illuminance * phase(dot(rain.suns[i].direction, -ray));
+    }
+    for (var left = lamps; left != 0u; left &= left - 1u) {
+        let lamp = rain.lights[firstTrailingBit(left)];
+        let way = position - lamp.position;
+        let square = dot(way, way);
+        let near = square * lamp.inverse_range_squared;
+        let fade = saturate(1.0 - near * near);
+        let direction = way * inverseSqrt(max(square, 1e-8));
+        let cone = saturate(dot(direction, lamp.direction) * lamp.spot_scale + lamp.spot_offset);
+        let attenuation = fade * fade * cone * cone / max(square, 0.0001);
+        if attenuation > 0.0 {
+            light += lamp.intensity * attenuation * phase(dot(direction, -ray));
+        }
+    }
+    return light;
+}
+
+// Whether a shelter is on the way from which drops come.
+fn is_sheltered(position: vec3<f32>) -> bool {
+    for (var i = 0u; i < rain.shelter_count; i += 1u) {
+        let local_from_relative = rain.shelters[i].local_from_relative;
+        let start = (local_from_relative * vec4(position, 1.0)).xyz;
+        let up = (local_from_relative * vec4(rain.axis, 0.0)).xyz;
+        let half_size = rain.shelters[i].half_size;
+        // Not quite parallel to any side.
+        let inverse = 1.0 / select(up, vec3(1e-12), abs(up) < vec3(1e-12));
+        let a = (-half_size - start) * inverse;
+        let b = (half_size - start) * inverse;
+        let enter = max(max(min(a.x, b.x), min(a.y, b.y)), min(a.z, b.z));
+        let leave = min(min(max(a.x, b.x), max(a.y, b.y)), max(a.z, b.z));
+        if leave >= max(enter, 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Premultiplied, to be put over what is there.
+fn over(radiance: vec3<f32>, opacity: f32) -> vec4<f32> {
+    return vec4(radiance * (opacity * view.exposure * rain.brightness), opacity);
+}

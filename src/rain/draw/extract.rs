@@ -1,0 +1,140 @@
+//! What the render world takes over each frame.
+
+use bevy::{
+    light::Skybox,
+    prelude::*,
+    render::{Extract, sync_component::SyncComponent, sync_world::RenderEntity},
+};
+
+use super::view::RainQuads;
+use crate::rain::{
+    bake::{BakedStreaks, ReadyStreaks},
+    classes::CLASSES,
+    clock::RainClock,
+    settings::{Rain, RainShelter},
+    streaks::{StreakClass, StreakInput},
+};
+
+impl SyncComponent for Rain {
+    type Target = (ExtractedRain, RainQuads);
+}
+
+/// A camera's rain. Cameras without any, or with a rate of 0, have none of this.
+#[doc(hidden)]
+#[derive(Component, Clone)]
+#[require(RainQuads)]
+pub struct ExtractedRain {
+    pub(crate) rain: Rain,
+    pub(crate) clock: RainClock,
+    pub(crate) streaks: AssetId<Image>,
+    pub(crate) input: StreakInput,
+    pub(crate) classes: [StreakClass; CLASSES],
+    /// cd/m², from all directions.
+    pub(crate) ambient: Vec3,
+    pub(crate) environment: Option<EnvironmentMap>,
+}
+
+/// A cubemap of what is far away.
+#[derive(Clone, Copy)]
+pub(crate) struct EnvironmentMap {
+    pub(crate) image: AssetId<Image>,
+    /// cd/m² per texel value.
+    pub(crate) intensity: f32,
+    pub(crate) rotation: Quat,
+}
+
+impl EnvironmentMap {
+    /// Of a map made for diffuse light rather than of the sky itself, for a drop gathers light from
+    /// a wide cone.
+    fn of(light: Option<&EnvironmentMapLight>, skybox: Option<&Skybox>) -> Option<Self> {
+        let from_light = light.map(|light| Self {
+            image: light.diffuse_map.id(),
+            intensity: light.intensity,
+            rotation: light.rotation,
+        });
+        from_light.or_else(|| {
+            let skybox = skybox?;
+            Some(Self {
+                image: skybox.image.as_ref()?.id(),
+                intensity: skybox.brightness,
+                rotation: skybox.rotation,
+            })
+        })
+    }
+}
+
+pub(crate) fn extract_rain(
+    cameras: Extract<
+        Query<
+            (
+                RenderEntity,
+                &Rain,
+                &RainClock,
+                Option<&AmbientLight>,
+                Option<&EnvironmentMapLight>,
+                Option<&Skybox>,
+            ),
+            With<Camera3d>,
+        >,
+    >,
+    streaks: Extract<Res<BakedStreaks>>,
+    ambient: Extract<Res<GlobalAmbientLight>>,
+    mut extracted: Query<&mut ExtractedRain>,
+    mut commands: Commands,
+) {
+    for (entity, rain, clock, own_ambient, light, skybox) in &cameras {
+        let (rain, _) = rain.sane();
+        let known = extracted.get_mut(entity);
+        let ready = streaks.ready().filter(|_| rain.rate > 0.0);
+        let Some(ReadyStreaks {
+            image,
+            input,
+            classes,
+        }) = ready
+        else {
+            if known.is_ok() {
+                commands
+                    .entity(entity)
+                    .remove::<<Rain as SyncComponent>::Target>();
+            }
+            continue;
+        };
+        let (color, brightness) = own_ambient.map_or((ambient.color, ambient.brightness), |own| {
+            (own.color, own.brightness)
+        });
+        let new = ExtractedRain {
+            rain,
+            clock: *clock,
+            streaks: image.id(),
+            input: *input,
+            classes: *classes,
+            ambient: color.to_linear().to_vec3() * brightness,
+            environment: EnvironmentMap::of(light, skybox),
+        };
+        match known {
+            Ok(mut known) => *known = new,
+            Err(_) => {
+                commands.entity(entity).insert(new);
+            }
+        }
+    }
+}
+
+/// Where it is dry.
+#[derive(Resource, Default)]
+pub(crate) struct Shelters(pub(crate) Vec<(GlobalTransform, Vec3)>);
+
+pub(crate) fn extract_shelters(
+    shelters: Extract<Query<(&RainShelter, &GlobalTransform)>>,
+    mut extracted: ResMut<Shelters>,
+) {
+    extracted.0.clear();
+    for (shelter, transform) in &shelters {
+        let matrix = transform.affine().matrix3;
+        if shelter.half_size.is_finite() && matrix.determinant().abs() > 1e-12 {
+            extracted.0.push((*transform, shelter.half_size.abs()));
+        } else {
+            bevy::utils::once!(warn!("a `RainShelter` without volume keeps no rain off"));
+        }
+    }
+}

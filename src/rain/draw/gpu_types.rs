@@ -1,0 +1,99 @@
+//! The Rust twins of `types.wgsl`: the same fields under the same names.
+
+use bevy::{prelude::*, render::render_resource::ShaderType};
+use bytemuck::{Pod, Zeroable};
+
+use crate::rain::classes::CLASSES;
+
+/// Sizes of voxels: see [`lattice::LEVELS`](super::lattice::LEVELS).
+pub(crate) const LEVEL_COUNT: usize = 6;
+/// Point and spot lights that light a view's rain; of more, those that are brightest at the camera.
+pub(crate) const MAX_LIGHTS: usize = 32;
+/// Directional lights that light rain.
+pub(crate) const MAX_SUNS: usize = 4;
+/// Shelters that keep rain off, the nearest to the camera.
+pub(crate) const MAX_SHELTERS: usize = 8;
+/// Terminal speeds in steps of 0.1 mm, four to a vector.
+pub(crate) const SPEED_VECTORS: usize = 16;
+
+#[derive(Clone, Copy, Default, ShaderType)]
+pub(crate) struct GpuRainClass {
+    pub(crate) lean: Vec2,
+    pub(crate) fallen_tiles: i32,
+    pub(crate) fallen: f32,
+}
+
+#[derive(Clone, Copy, Default, ShaderType)]
+pub(crate) struct GpuRainLevel {
+    pub(crate) size: f32,
+    pub(crate) start: f32,
+    pub(crate) end: f32,
+    pub(crate) gain: f32,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
+pub(crate) struct GpuRainLight {
+    pub(crate) position: Vec3,
+    pub(crate) inverse_range_squared: f32,
+    pub(crate) intensity: Vec3,
+    pub(crate) spot_scale: f32,
+    pub(crate) direction: Vec3,
+    pub(crate) spot_offset: f32,
+}
+
+#[derive(Clone, Copy, Default, ShaderType)]
+pub(crate) struct GpuRainSun {
+    pub(crate) direction: Vec3,
+    pub(crate) illuminance: Vec3,
+}
+
+#[derive(Clone, Copy, Default, ShaderType)]
+pub(crate) struct GpuShelter {
+    pub(crate) local_from_relative: Mat4,
+    pub(crate) half_size: Vec3,
+}
+
+#[derive(Clone, Copy, Default, ShaderType)]
+pub(crate) struct GpuRain {
+    pub(crate) axis: Vec3,
+    pub(crate) distance: f32,
+    pub(crate) forward: Vec3,
+    pub(crate) perspective: u32,
+    pub(crate) ambient: Vec3,
+    pub(crate) environment_intensity: f32,
+    pub(crate) environment_from_world: Mat3,
+    pub(crate) extinction: f32,
+    pub(crate) extent: f32,
+    pub(crate) brightness: f32,
+    pub(crate) sun_count: u32,
+    pub(crate) shelter_count: u32,
+    pub(crate) drop_count: u32,
+    pub(crate) exposure: f32,
+    pub(crate) seconds: f32,
+    pub(crate) wind: Vec2,
+    pub(crate) slope: f32,
+    pub(crate) smallest: f32,
+    pub(crate) largest: f32,
+    pub(crate) speeds: [Vec4; SPEED_VECTORS],
+    pub(crate) classes: [GpuRainClass; CLASSES],
+    pub(crate) weights: [[Vec4; CLASSES]; LEVEL_COUNT],
+    pub(crate) levels: [GpuRainLevel; LEVEL_COUNT],
+    pub(crate) lights: [GpuRainLight; MAX_LIGHTS],
+    pub(crate) suns: [GpuRainSun; MAX_SUNS],
+    pub(crate) shelters: [GpuShelter; MAX_SHELTERS],
+}
+
+/// A voxel with rain in it: `Quad` of `billboards.wgsl`, `Cell` of `drops.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct GpuQuad {
+    pub(crate) center: Vec3,
+    pub(crate) size: f32,
+    pub(crate) radius: f32,
+    pub(crate) base: f32,
+    pub(crate) fraction: f32,
+    pub(crate) tile: i32,
+    pub(crate) hash: u32,
+    pub(crate) lamps: u32,
+    pub(crate) level: u32,
+}

@@ -1,0 +1,180 @@
+use super::*;
+
+const DISTANCE: f32 = 10.0;
+
+fn perspective() -> Mat4 {
+    Mat4::perspective_infinite_reverse_rh(0.8, 1.5, 0.1)
+}
+
+fn eye_at(place: Vec3, target: Vec3, projection: Mat4) -> Eye {
+    let pose = Transform::from_translation(place).looking_at(target, Vec3::Y);
+    Eye::new(&pose.into(), &projection, DISTANCE).unwrap()
+}
+
+fn quads(eye: &Eye, clock: &RainClock) -> Vec<GpuQuad> {
+    let mut quads = Vec::new();
+    assert!(!fill(&mut quads, eye, clock, &LEVELS, DISTANCE, |_| true));
+    quads
+}
+
+#[test]
+fn voxels_come_far_to_near_and_in_view() {
+    let eye = eye_at(vec3(0.3, 1.7, -0.2), vec3(2.0, 1.5, -9.0), perspective());
+    let quads = quads(&eye, &RainClock::default());
+    assert!(quads.len() > 100 && quads.len() < 2000, "{}", quads.len());
+    assert!(quads.is_sorted_by(|a, b| a.radius >= b.radius));
+    for quad in &quads {
+        assert!(quad.center.dot(eye.forward) > -quad.size);
+        assert!(quad.radius <= DISTANCE + quad.size);
+    }
+}
+
+/// METHOD's unit: as many metres of voxels as there are metres of way. Counted as the billboards'
+/// shader counts, over many places of the eye.
+#[test]
+fn every_ray_goes_through_as_much_rain_as_it_is_long() {
+    for (clock, pitch) in [
+        (RainClock::default(), 0.0),
+        (RainClock::default(), 0.5),
+        (
+            RainClock {
+                lean: vec2(0.4, -0.3),
+                ..default()
+            },
+            0.2,
+        ),
+    ] {
+        let axis = fall_axis(clock.lean);
+        let (mut sum, rays) = (0.0, 3000);
+        for i in 0..rays {
+            let random = |k: u32| (hash([i, k, 9]) >> 8) as f32 / 16_777_216.0;
+            let place = vec3(random(0), random(1), random(2)) * 16.0;
+            let turn = Quat::from_rotation_y(random(3) * core::f32::consts::TAU)
+                * Quat::from_rotation_x(pitch);
+            let ray = turn * Vec3::NEG_Z;
+            let eye = eye_at(place, place + ray, perspective());
+            for quad in quads(&eye, &clock) {
+                sum += f64::from(way_in(&quad, ray, axis));
+            }
+        }
+        let mean = sum / f64::from(rays);
+        assert!(
+            (mean / f64::from(DISTANCE) - 1.0).abs() < 0.02,
+            "pitch {pitch}: {mean} m"
+        );
+    }
+}
+
+/// What `billboards.wgsl` counts of a voxel for a ray from the eye. Unit: m.
+fn way_in(quad: &GpuQuad, ray: Vec3, axis: Vec3) -> f32 {
+    let across = |way: Vec3| way - way.dot(axis) * axis;
+    let normal = across(quad.center).normalize();
+    let t = quad.center.dot(normal) / ray.dot(normal);
+    if t <= 0.0 {
+        return 0.0;
+    }
+    let hit = ray * t - quad.center;
+    let side = axis.cross(quad.center).normalize();
+    if hit.dot(side).abs() > 0.5 * quad.size || (hit.dot(axis) * axis.y).abs() > 0.5 * quad.size {
+        return 0.0;
+    }
+    let level = LEVELS[quad.level as usize];
+    let steepness = (1.0 - ray.dot(axis).powi(2)).sqrt();
+    let distance = t * steepness;
+    let end = level.end.min(DISTANCE * steepness);
+    let half = 0.5 * quad.size;
+    let part = (distance + half).min(end) - (distance - half).max(level.start);
+    let facing = (distance / quad.radius).min(4.0);
+    part.max(0.0) * facing * level.gain(DISTANCE) * axis.y / steepness
+}
+
+#[test]
+fn a_jump_of_a_kilometre_is_like_any_other_place() {
+    let far = vec3(1000.0, 0.0, -1000.0);
+    let here = quads(
+        &eye_at(Vec3::ZERO, Vec3::NEG_Z, perspective()),
+        &RainClock::default(),
+    );
+    let there = quads(
+        &eye_at(far, far + Vec3::NEG_Z, perspective()),
+        &RainClock::default(),
+    );
+    // 1000 m are whole voxels of every size but the largest, which reach not so near.
+    assert_eq!(here.len(), there.len());
+    for quad in &here {
+        let same = there.iter().any(|other| {
+            other.center.distance(quad.center) < 1e-3
+                && (other.tile, other.level) == (quad.tile, quad.level)
+        });
+        assert!(same, "{quad:?}");
+    }
+    // Yet the drops are others.
+    let shared = here
+        .iter()
+        .filter(|q| there.iter().any(|o| o.hash == q.hash))
+        .count();
+    assert!(shared * 10 < here.len(), "{shared} of {}", here.len());
+}
+
+#[test]
+fn voxels_stand_still_while_the_camera_moves() {
+    let clock = RainClock {
+        lean: vec2(0.2, 0.1),
+        ..default()
+    };
+    let place = vec3(0.37, 1.6, 0.81);
+    let step = vec3(0.05, -0.02, 0.03);
+    let before = quads(&eye_at(place, place + Vec3::X, perspective()), &clock);
+    let after = quads(
+        &eye_at(place + step, place + step + Vec3::X, perspective()),
+        &clock,
+    );
+    let known = after
+        .iter()
+        .filter(|quad| {
+            before.iter().any(|other| {
+                other.hash == quad.hash
+                    && (other.center - step).distance(quad.center) < 1e-4
+                    && other.tile == quad.tile
+            })
+        })
+        .count();
+    assert!(10 * known > 9 * after.len(), "{known} of {}", after.len());
+}
+
+#[test]
+fn an_orthographic_eye_sees_rain_all_over() {
+    let projection = Mat4::orthographic_rh(-8.0, 8.0, -5.0, 5.0, 50.0, 0.0);
+    let eye = eye_at(vec3(0.0, 2.0, 0.0), vec3(0.0, 1.0, -5.0), projection);
+    assert!(!eye.perspective);
+    let quads = quads(&eye, &RainClock::default());
+    let right = eye.forward.cross(Vec3::Y).normalize();
+    let sides: Vec<f32> = quads.iter().map(|quad| quad.center.dot(right)).collect();
+    assert!(sides.iter().any(|&x| x < -7.0) && sides.iter().any(|&x| x > 7.0));
+    assert!(quads.iter().all(|quad| quad.radius < DISTANCE + quad.size));
+}
+
+#[test]
+fn matrices_without_sense_see_nothing() {
+    for projection in [Mat4::ZERO, Mat4::from_cols_array(&[f32::NAN; 16])] {
+        assert!(Eye::new(&GlobalTransform::IDENTITY, &projection, 5.0).is_none());
+    }
+    let nowhere = GlobalTransform::from_xyz(f32::NAN, 0.0, 0.0);
+    assert!(Eye::new(&nowhere, &perspective(), 5.0).is_none());
+}
+
+#[test]
+fn the_number_of_voxels_is_bounded() {
+    let projection = Mat4::orthographic_rh(-4000.0, 4000.0, -4000.0, 4000.0, 50.0, 0.0);
+    let eye = eye_at(Vec3::ZERO, Vec3::NEG_Z, projection);
+    let mut quads = Vec::new();
+    assert!(fill(
+        &mut quads,
+        &eye,
+        &RainClock::default(),
+        &LEVELS,
+        DISTANCE,
+        |_| true
+    ));
+    assert!(quads.len() <= MAX_QUADS);
+}

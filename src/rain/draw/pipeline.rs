@@ -1,0 +1,181 @@
+//! The pipelines, and what they share.
+
+use bevy::{
+    asset::load_embedded_asset,
+    core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
+    mesh::{VertexBufferLayout, VertexFormat},
+    prelude::*,
+    render::{
+        render_resource::{
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BlendComponent, BlendFactor,
+            BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
+            DepthStencilState, FragmentState, MultisampleState, PrimitiveState, PrimitiveTopology,
+            RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
+            TextureFormat, TextureSampleType, VertexState, VertexStepMode,
+            binding_types::{
+                sampler, texture_2d_array, texture_cube, texture_depth_2d,
+                texture_depth_2d_multisampled, uniform_buffer,
+            },
+        },
+        view::ViewUniform,
+    },
+    shader::Shader,
+};
+
+use super::gpu_types::GpuRain;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum RainPart {
+    /// What fades beyond the streaks.
+    Backdrop,
+    /// Voxels of streaks.
+    Billboards,
+    /// Drops one by one.
+    Drops,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RainKey {
+    pub(crate) part: RainPart,
+    pub(crate) format: TextureFormat,
+    pub(crate) samples: u32,
+}
+
+#[derive(Resource)]
+pub(crate) struct RainPipeline {
+    /// Without and with multisampling.
+    pub(crate) layouts: [BindGroupLayoutDescriptor; 2],
+    backdrop: Handle<Shader>,
+    billboards: Handle<Shader>,
+    drops: Handle<Shader>,
+}
+
+pub(crate) fn init_rain_pipeline(mut commands: Commands, assets: Res<AssetServer>) {
+    let layouts = [false, true].map(|multisampled| {
+        BindGroupLayoutDescriptor::new(
+            "rain_layout",
+            &BindGroupLayoutEntries::sequential(
+                ShaderStages::VERTEX_FRAGMENT,
+                (
+                    uniform_buffer::<ViewUniform>(true),
+                    uniform_buffer::<GpuRain>(true),
+                    if multisampled {
+                        texture_depth_2d_multisampled()
+                    } else {
+                        texture_depth_2d()
+                    },
+                    texture_cube(TextureSampleType::Float { filterable: true }),
+                    sampler(SamplerBindingType::Filtering),
+                    texture_2d_array(TextureSampleType::Float { filterable: true }),
+                    sampler(SamplerBindingType::Filtering),
+                ),
+            ),
+        )
+    });
+    commands.insert_resource(RainPipeline {
+        layouts,
+        backdrop: load_embedded_asset!(assets.as_ref(), "backdrop.wgsl"),
+        billboards: load_embedded_asset!(assets.as_ref(), "billboards.wgsl"),
+        drops: load_embedded_asset!(assets.as_ref(), "drops.wgsl"),
+    });
+}
+
+/// Premultiplied colours, over what is there; the target's alpha stays.
+const OVER: BlendState = BlendState {
+    color: BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::OneMinusSrcAlpha,
+        operation: BlendOperation::Add,
+    },
+    alpha: BlendComponent {
+        src_factor: BlendFactor::Zero,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    },
+};
+
+impl SpecializedRenderPipeline for RainPipeline {
+    type Key = RainKey;
+
+    fn specialize(&self, key: RainKey) -> RenderPipelineDescriptor {
+        let multisampled = key.samples > 1;
+        let shader_defs = if multisampled {
+            vec!["MULTISAMPLED".into()]
+        } else {
+            vec![]
+        };
+        let (label, shader, topology) = match key.part {
+            RainPart::Backdrop => (
+                "rain_backdrop",
+                &self.backdrop,
+                PrimitiveTopology::TriangleList,
+            ),
+            RainPart::Billboards => (
+                "rain_billboards",
+                &self.billboards,
+                PrimitiveTopology::TriangleStrip,
+            ),
+            RainPart::Drops => ("rain_drops", &self.drops, PrimitiveTopology::TriangleList),
+        };
+        let buffers = match key.part {
+            RainPart::Backdrop => vec![],
+            RainPart::Billboards | RainPart::Drops => vec![quad_layout()],
+        };
+        RenderPipelineDescriptor {
+            label: Some(label.into()),
+            layout: vec![self.layouts[usize::from(multisampled)].clone()],
+            vertex: VertexState {
+                shader: shader.clone(),
+                shader_defs: shader_defs.clone(),
+                entry_point: Some("vertex".into()),
+                buffers,
+            },
+            primitive: PrimitiveState {
+                topology,
+                ..default()
+            },
+            // The shaders look at the scene's depth themselves: a voxel may reach before it.
+            depth_stencil: Some(DepthStencilState {
+                format: CORE_3D_DEPTH_FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(CompareFunction::Always),
+                stencil: default(),
+                bias: default(),
+            }),
+            multisample: MultisampleState {
+                count: key.samples,
+                ..default()
+            },
+            fragment: Some(FragmentState {
+                shader: shader.clone(),
+                shader_defs,
+                entry_point: Some("fragment".into()),
+                targets: vec![Some(ColorTargetState {
+                    format: key.format,
+                    blend: Some(OVER),
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            ..default()
+        }
+    }
+}
+
+/// `GpuQuad`, one an instance.
+fn quad_layout() -> VertexBufferLayout {
+    VertexBufferLayout::from_vertex_formats(
+        VertexStepMode::Instance,
+        [
+            VertexFormat::Float32x3,
+            VertexFormat::Float32,
+            VertexFormat::Float32,
+            VertexFormat::Float32,
+            VertexFormat::Float32,
+            VertexFormat::Sint32,
+            VertexFormat::Uint32,
+            VertexFormat::Uint32,
+            VertexFormat::Uint32,
+        ],
+    )
+}

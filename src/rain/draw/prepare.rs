@@ -1,0 +1,274 @@
+//! From the view to what its rain needs this frame.
+
+use bevy::{
+    core_pipeline::core_3d::{CORE_3D_DEPTH_FORMAT, Transparent3d, TransparentSortingInfo3d},
+    pbr::{ExtractedDirectionalLight, ExtractedPointLight},
+    prelude::*,
+    render::{
+        camera::ExtractedCamera,
+        render_asset::RenderAssets,
+        render_phase::{DrawFunctions, PhaseItemExtraIndex, ViewSortedRenderPhases},
+        render_resource::{
+            BindGroupEntries, Buffer, BufferInitDescriptor, BufferUsages, DynamicUniformBuffer,
+            Extent3d, PipelineCache, SpecializedRenderPipelines, TextureDescriptor,
+            TextureDimension, TextureUsages,
+        },
+        renderer::{RenderDevice, RenderQueue},
+        texture::{FallbackImage, GpuImage, TextureCache},
+        view::{ExtractedView, ViewUniformOffset, ViewUniforms},
+    },
+};
+
+use super::{
+    command::DrawRain,
+    extract::{EnvironmentMap, ExtractedRain, Shelters},
+    gpu_types::GpuRain,
+    lattice::{Eye, LEVELS, Level, fill},
+    lights::{NearLights, suns},
+    pipeline::{RainKey, RainPart, RainPipeline},
+    view::{MAX_SHELLS, RainQuads},
+};
+use crate::rain::{clock::RainClock, settings::RainMethod};
+
+/// What all views share.
+#[derive(Resource)]
+pub(crate) struct RainBuffers {
+    pub(crate) uniforms: DynamicUniformBuffer<GpuRain>,
+    /// Two triangles for every four vertices.
+    pub(crate) drop_indices: Option<Buffer>,
+    /// Phases tell their items apart by entity; these stand for a view's shells and its backdrop.
+    pub(crate) shells: [Entity; MAX_SHELLS + 1],
+    near: NearLights,
+}
+
+pub(crate) fn init_rain_buffers(mut commands: Commands) {
+    let shells = core::array::from_fn(|_| commands.spawn_empty().id());
+    commands.insert_resource(RainBuffers {
+        uniforms: DynamicUniformBuffer::default(),
+        drop_indices: None,
+        shells,
+        near: NearLights::default(),
+    });
+}
+
+/// Drops are drawn in cubes of one metre, however far away.
+const CELLS: [Level; 1] = [Level {
+    size: 1.0,
+    start: 0.0,
+    end: f32::INFINITY,
+}];
+/// Denser rain than 200 mm/h is not asked for.
+const MAX_DROPS: u32 = 6000;
+
+/// Chooses the voxels and has them drawn among the transparent things.
+pub(crate) fn queue_rain(
+    mut views: Query<(&ExtractedView, &ExtractedRain, &mut RainQuads, &Msaa)>,
+    lamps: Query<&ExtractedPointLight>,
+    sun_lights: Query<&ExtractedDirectionalLight>,
+    mut shelters: ResMut<Shelters>,
+    mut buffers: ResMut<RainBuffers>,
+    mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
+    functions: Res<DrawFunctions<Transparent3d>>,
+    pipeline: Res<RainPipeline>,
+    mut pipelines: ResMut<SpecializedRenderPipelines<RainPipeline>>,
+    images: Res<RenderAssets<GpuImage>>,
+    cache: Res<PipelineCache>,
+) {
+    let buffers = &mut *buffers;
+    buffers.uniforms.clear();
+    let draw = functions.read().id::<DrawRain>();
+    for (view, extracted, mut quads, msaa) in &mut views {
+        let quads = &mut *quads;
+        quads.instances.clear();
+        quads.shells.clear();
+        let rain = &extracted.rain;
+        let eye = Eye::new(&view.world_from_view, &view.clip_from_view, rain.distance);
+        let (Some(eye), Some(phase)) = (eye, phases.get_mut(&view.retained_view_entity)) else {
+            continue;
+        };
+        let place = view.world_from_view.translation();
+        let mut gpu = GpuRain::new(extracted, &eye);
+        gpu.shelter(&mut shelters, place);
+        (gpu.suns, gpu.sun_count) = suns(sun_lights.iter());
+        buffers.near.gather(lamps.iter(), place, rain.distance);
+        gpu.lights = buffers.near.gpu();
+        if let Some(map) = environment_of(extracted, &images) {
+            // Cubemaps are left-handed.
+            gpu.environment_from_world =
+                Mat3::from_diagonal(vec3(1.0, 1.0, -1.0)) * Mat3::from_quat(map.rotation.inverse());
+            gpu.environment_intensity = map.intensity;
+        }
+
+        // Where nothing lights rain from all around, what no lamp reaches is dark: its faint shade
+        // is left out.
+        let always = gpu.ambient != Vec3::ZERO
+            || gpu.environment_intensity > 0.0
+            || gpu.sun_count > 0
+            || rain.brightness <= 0.0;
+        let near = &buffers.near;
+        let reach = 0.87 / gpu.axis.y;
+        let keep = |quad: &mut super::gpu_types::GpuQuad| {
+            if !near.is_empty() {
+                quad.lamps = near.reaching(quad.center, reach * quad.size);
+            }
+            always || quad.lamps != 0
+        };
+        let (part, levels, clock) = match rain.method {
+            RainMethod::Streaks => (RainPart::Billboards, &LEVELS[..], extracted.clock),
+            // Each drop leans by itself.
+            RainMethod::PerDrop => (RainPart::Drops, &CELLS[..], RainClock::default()),
+        };
+        let instances = quads.instances.values_mut();
+        if fill(instances, &eye, &clock, levels, rain.distance, keep) {
+            bevy::utils::once!(warn!(
+                "a view is too wide for its rain: not all of it is drawn"
+            ));
+        }
+        quads.drop_indices = match rain.method {
+            RainMethod::Streaks => 0,
+            RainMethod::PerDrop => 6 * gpu.drop_count.min(MAX_DROPS),
+        };
+        quads.uniform_offset = buffers.uniforms.push(&gpu);
+        let samples = msaa.samples();
+        let ids = [RainPart::Backdrop, part].map(|part| {
+            let key = RainKey {
+                part,
+                format: view.target_format,
+                samples,
+            };
+            pipelines.specialize(&cache, &pipeline, key)
+        });
+        quads.pipelines = Some(ids);
+
+        quads.cut_shells(rain.distance, phase.items.is_empty());
+        let mut add = |slot: usize, distance: f32, pipeline| {
+            phase.add_transient(Transparent3d {
+                sorting_info: TransparentSortingInfo3d::Sorted {
+                    mesh_center: place + eye.forward * distance,
+                    depth_bias: 0.0,
+                },
+                distance: 0.0,
+                pipeline,
+                entity: (buffers.shells[slot], view.retained_view_entity.main_entity),
+                draw_function: draw,
+                batch_range: 0..1,
+                // Which shell; the last is the backdrop.
+                extra_index: PhaseItemExtraIndex::DynamicOffset(slot as u32),
+                indexed: false,
+            });
+        };
+        if rain.extent > rain.distance {
+            add(MAX_SHELLS, rain.distance + 1.0, ids[0]);
+        }
+        for (slot, shell) in quads.shells.iter().enumerate() {
+            add(slot, shell.distance, ids[1]);
+        }
+    }
+}
+
+fn environment_of(
+    extracted: &ExtractedRain,
+    images: &RenderAssets<GpuImage>,
+) -> Option<EnvironmentMap> {
+    extracted.environment.filter(|map| {
+        images
+            .get(map.image)
+            .is_some_and(|image| image.texture_descriptor.size.depth_or_array_layers == 6)
+    })
+}
+
+/// The scene's depth is copied: it cannot be read where it is attached.
+pub(crate) fn allow_depth_copies(mut cameras: Query<&mut Camera3d, With<ExtractedRain>>) {
+    for mut camera in &mut cameras {
+        camera.depth_texture_usages.0 |= TextureUsages::COPY_SRC.bits();
+    }
+}
+
+pub(crate) fn prepare_rain(
+    mut views: Query<(&ExtractedCamera, &mut RainQuads, &Msaa)>,
+    mut buffers: ResMut<RainBuffers>,
+    mut textures: ResMut<TextureCache>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    buffers.uniforms.write_buffer(&device, &queue);
+    for (camera, mut quads, msaa) in &mut views {
+        let Some(size) = camera.physical_target_size else {
+            continue;
+        };
+        if quads.drop_indices > 0 && buffers.drop_indices.is_none() {
+            buffers.drop_indices = Some(drop_indices(&device));
+        }
+        let capacity = quads.instances.len().next_power_of_two();
+        quads.instances.reserve(capacity, &device);
+        quads.instances.write_buffer(&device, &queue);
+        quads.depth = Some(textures.get(
+            &device,
+            TextureDescriptor {
+                label: Some("rain_scene_depth"),
+                size: Extent3d {
+                    width: size.x,
+                    height: size.y,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: msaa.samples(),
+                dimension: TextureDimension::D2,
+                format: CORE_3D_DEPTH_FORMAT,
+                // Multisampled textures must be attachable.
+                usage: TextureUsages::TEXTURE_BINDING
+                    | TextureUsages::COPY_DST
+                    | TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            },
+        ));
+    }
+}
+
+fn drop_indices(device: &RenderDevice) -> Buffer {
+    let indices: Vec<u32> = (0..MAX_DROPS)
+        .flat_map(|drop| [0, 1, 2, 2, 1, 3].map(|corner| 4 * drop + corner))
+        .collect();
+    device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("rain_drop_indices"),
+        contents: bytemuck::cast_slice(&indices),
+        usage: BufferUsages::INDEX,
+    })
+}
+
+pub(crate) fn prepare_rain_bind_groups(
+    mut views: Query<(&ExtractedRain, &mut RainQuads, &Msaa, &ViewUniformOffset)>,
+    buffers: Res<RainBuffers>,
+    pipeline: Res<RainPipeline>,
+    cache: Res<PipelineCache>,
+    device: Res<RenderDevice>,
+    view_uniforms: Res<ViewUniforms>,
+    images: Res<RenderAssets<GpuImage>>,
+    fallback: Res<FallbackImage>,
+) {
+    for (extracted, mut quads, msaa, view_offset) in &mut views {
+        quads.view_offset = view_offset.offset;
+        let environment = environment_of(extracted, &images)
+            .and_then(|map| images.get(map.image))
+            .unwrap_or(&fallback.cube);
+        let group = (|| {
+            let streaks = images.get(extracted.streaks)?;
+            let depth = quads.depth.as_ref()?;
+            let multisampled = usize::from(msaa.samples() > 1);
+            Some(device.create_bind_group(
+                "rain",
+                &cache.get_bind_group_layout(&pipeline.layouts[multisampled]),
+                &BindGroupEntries::sequential((
+                    view_uniforms.uniforms.binding()?,
+                    buffers.uniforms.binding()?,
+                    &depth.default_view,
+                    &environment.texture_view,
+                    &environment.sampler,
+                    &streaks.texture_view,
+                    &streaks.sampler,
+                )),
+            ))
+        })();
+        quads.bind_group = group;
+    }
+}

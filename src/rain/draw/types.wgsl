@@ -1,0 +1,92 @@
+#define_import_path bevy_fluid::rain::draw::types
+
+// Positions are relative to the eye, in metres along the world's axes.
+
+struct GpuRainClass {
+    // How far its drops go sideways (x, z) while they fall a metre, beyond what the axis leans.
+    lean: vec2<f32>,
+    // How far they have fallen: whole metres, and the rest.
+    fallen_tiles: i32,
+    fallen: f32,
+}
+
+struct GpuRainLevel {
+    // Side of its voxels.
+    size: f32,
+    // Distances from the eye, across the fall, that its voxels stand for.
+    start: f32,
+    end: f32,
+    // Makes good for what billboards cannot cover around the eye.
+    gain: f32,
+}
+
+struct GpuRainLight {
+    position: vec3<f32>,
+    inverse_range_squared: f32,
+    // cd times the light's colour.
+    intensity: vec3<f32>,
+    spot_scale: f32,
+    // Where a spot light shines.
+    direction: vec3<f32>,
+    spot_offset: f32,
+}
+
+struct GpuRainSun {
+    // The way its light goes.
+    direction: vec3<f32>,
+    // lx times the light's colour.
+    illuminance: vec3<f32>,
+}
+
+struct GpuShelter {
+    local_from_relative: mat4x4<f32>,
+    half_size: vec3<f32>,
+}
+
+struct GpuRain {
+    // Drops of mean speed come from there: unit length, y > 0.
+    axis: vec3<f32>,
+    distance: f32,
+    // Where the camera looks.
+    forward: vec3<f32>,
+    // 0: the rays of the view are parallel.
+    perspective: u32,
+    // Radiance in all directions, cd/m².
+    ambient: vec3<f32>,
+    // cd/m² per texel of the environment map; 0: there is none.
+    environment_intensity: f32,
+    environment_from_world: mat3x3<f32>,
+    // 1/m.
+    extinction: f32,
+    extent: f32,
+    brightness: f32,
+    sun_count: u32,
+    shelter_count: u32,
+    // For drops one by one: how many in a cubic metre, for how long, and how they are distributed.
+    drop_count: u32,
+    exposure: f32,
+    seconds: f32,
+    wind: vec2<f32>,
+    // 1/mm.
+    slope: f32,
+    smallest: f32,
+    largest: f32,
+    // Terminal speeds by diameter, in steps of SPEED_STEP.
+    speeds: array<vec4<f32>, 16>,
+    classes: array<GpuRainClass, 5>,
+    // Of each level's classes: what of the four densities makes up a voxel.
+    weights: array<array<vec4<f32>, 5>, 6>,
+    levels: array<GpuRainLevel, 6>,
+    lights: array<GpuRainLight, 32>,
+    suns: array<GpuRainSun, 4>,
+    shelters: array<GpuShelter, 8>,
+}
+
+// Classes of diameters, the last with all drops: that is what levels from a certain one on show.
+const CLASSES: u32 = 5u;
+const MERGED_FROM: u32 = 2u;
+const VARIANTS: u32 = 4u;
+// Texels along a metre, across the fall and along it.
+const STREAK_TEXELS: vec2<f32> = vec2(512.0, 256.0);
+// mm.
+const SPEED_STEP: f32 = 0.1;

@@ -1,0 +1,80 @@
+//! Rain: falling drops as streaks of light, for a camera with [`Rain`].
+//!
+//! After Yoshida, Dobashi and Yamamoto, *A fast rendering method of rain streaks for rainy
+//! landscapes*: the streaks of all drops in a cubic metre of air are drawn into textures ahead
+//! ([`streaks`]); voxels around the camera show them on billboards that face it. The game's lights
+//! light them.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_fluid::prelude::*;
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, RainPlugin::default()))
+//!     .add_systems(Startup, |mut commands: Commands| {
+//!         commands.spawn((Camera3d::default(), Rain::HEAVY));
+//!     })
+//!     .run();
+//! ```
+//!
+//! # What is ours
+//!
+//! - A streak's length follows the exposure time, its opacity keeps the light a drop takes
+//!   ([`drops::extinction`]) whatever the exposure.
+//! - A column of falling billboards is one standing billboard whose textures fall, each at its own
+//!   speed: all diameters in one draw of one layer.
+//! - Voxels are half a metre wide near the eye, and from 2 m on twice as wide each time the distance
+//!   doubles: the cost grows with the logarithm of the distance. There, where a streak is a pixel
+//!   wide, drops of all diameters fall together.
+//! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
+//!   depth, are mixed from one texel.
+//!
+//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs.
+
+mod bake;
+pub mod classes;
+mod clock;
+mod draw;
+pub mod drops;
+pub mod phase;
+mod random;
+mod settings;
+pub mod streaks;
+
+use bevy::{
+    diagnostic::{Diagnostic, RegisterDiagnostic},
+    prelude::*,
+};
+
+pub use self::{
+    bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
+    clock::RainClock,
+    draw::RainQuads,
+    drops::DragLaw,
+    settings::{Exposure, Rain, RainMethod, RainShelter, RainStreaks},
+};
+
+/// Draws rain for cameras with [`Rain`]. It stands beside `FluidPlugin` and needs nothing of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RainPlugin {
+    /// Whether the app waits for the textures of streaks instead of having them drawn in the
+    /// background: for pictures and tests, where every frame counts. Default false.
+    pub synchronous_bake: bool,
+}
+
+impl Plugin for RainPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RainStreaks>()
+            .init_resource::<BakedStreaks>()
+            .insert_resource(bake::SynchronousBake(self.synchronous_bake))
+            .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))
+            .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
+            .add_systems(
+                PostUpdate,
+                (bake::bake_streaks, clock::advance_clocks)
+                    .chain()
+                    .after(TransformSystems::Propagate),
+            )
+            .add_plugins(draw::RainDrawPlugin);
+    }
+}

@@ -1,0 +1,273 @@
+//! Textures of the streaks that drops in a cubic metre draw while the shutter is open.
+//!
+//! Seen from the side in parallel projection. One layer per class of diameters and variant; the four
+//! channels of a layer are four densities of drops, each holding the drops of the one before it and
+//! more. Layers tile: what leaves one on one side enters on the other, and streaks across the upper
+//! and lower border are the same in all variants of a class, so that any two may stand on another.
+//!
+//! A drop of diameter D that falls at v covers a point of its way for D/v on average times π/4 for
+//! its roundness, of an exposure T: opacity π/4 · D/(vT), over a width of D and a length of vT. That
+//! is an area of π/4 · D², the drop's cross section, whatever the exposure; it is spread over the
+//! texels exactly.
+
+use core::f64::consts::{FRAC_PI_4, PI};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
+use super::{
+    classes::{BAKED_RATES, CLASSES, Class, DENSITIES},
+    drops::{DragLaw, sample_diameter, slope},
+    random::Random,
+};
+
+/// Textures per class. Each has its own drops, so that repetition does not show.
+pub const VARIANTS: usize = 4;
+/// Layers of the array texture; class by class.
+pub const LAYERS: usize = CLASSES * VARIANTS;
+/// Texels along a metre across the fall. A power of two.
+pub const WIDTH: usize = 512;
+/// Texels along a metre of fall: fewer, for streaks have no detail that way. A power of two.
+pub const HEIGHT: usize = 256;
+/// Unit: s. Longer ones would have streaks leave their cube.
+pub const LONGEST_EXPOSURE: f32 = 0.1;
+/// Unit: s.
+pub const SHORTEST_EXPOSURE: f32 = 1e-4;
+
+/// What streaks look like depends on these alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreakInput {
+    /// How long the shutter is open. Unit: s.
+    pub exposure: f32,
+    /// How fast drops fall.
+    pub law: DragLaw,
+    /// Other seeds, other drops.
+    pub seed: u64,
+}
+
+/// The textures, and what is needed to read them.
+#[derive(Clone, Debug)]
+pub struct Streaks {
+    /// Unorm texels of four channels: layer by layer, each with all its mip levels, rows from the
+    /// top.
+    pub texels: Vec<u8>,
+    /// What is known of each class.
+    pub classes: [StreakClass; CLASSES],
+}
+
+/// How to read the layers of a class.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StreakClass {
+    /// The opacity of a texel of 1.
+    pub scale: f32,
+    /// Mean opacity of each density: the cross sections of its drops per m³. Unit: 1/m.
+    pub extinction: [f64; DENSITIES],
+    /// At which its drops fall together. Unit: m/s.
+    pub speed: f64,
+}
+
+/// How many mip levels a layer has.
+pub const MIP_LEVELS: u32 = WIDTH.ilog2() + 1;
+
+/// The size of a mip level.
+pub const fn mip_size(level: u32) -> (usize, usize) {
+    let (width, height) = (WIDTH >> level, HEIGHT >> level);
+    (
+        if width == 0 { 1 } else { width },
+        if height == 0 { 1 } else { height },
+    )
+}
+
+/// Opacity of the four densities.
+type Texel = [f32; DENSITIES];
+
+/// A drop on its way through the cube.
+#[derive(Clone, Copy, Debug)]
+struct Streak {
+    /// Across the fall. Unit: m, 0..1.
+    x: f64,
+    /// Where the drop is when the shutter closes, from the bottom. Unit: m, 0..1.
+    y: f64,
+    /// m.
+    length: f64,
+    /// m.
+    radius: f64,
+    /// The first density that has it.
+    density: usize,
+}
+
+/// Draws all textures, in parallel; `done` counts finished layers.
+pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
+    let baked: Vec<(StreakClass, Vec<u8>)> = Class::all()
+        .par_iter()
+        .enumerate()
+        .map(|(index, class)| bake_class(input, index, class, done))
+        .collect();
+    let mut classes = [StreakClass::default(); CLASSES];
+    let mut texels = Vec::with_capacity(baked.iter().map(|(_, texels)| texels.len()).sum());
+    for (slot, (class, layers)) in classes.iter_mut().zip(&baked) {
+        *slot = *class;
+        texels.extend_from_slice(layers);
+    }
+    Streaks { texels, classes }
+}
+
+fn bake_class(
+    input: &StreakInput,
+    index: usize,
+    class: &Class,
+    done: &AtomicU32,
+) -> (StreakClass, Vec<u8>) {
+    let variants = sample_streaks(input, index, class);
+    let mut extinction = [0.0; DENSITIES];
+    for streak in variants.iter().flatten() {
+        for sum in &mut extinction[streak.density..] {
+            *sum += PI * streak.radius.powi(2) / VARIANTS as f64;
+        }
+    }
+    let layers: Vec<Vec<Texel>> = variants.par_iter().map(|streaks| draw(streaks)).collect();
+    // Rain denser than the densest is seldom: most of the range is for what is there.
+    let scale = layers
+        .iter()
+        .flatten()
+        .flatten()
+        .copied()
+        .fold(0.0, f32::max);
+    let texels = layers
+        .into_par_iter()
+        .flat_map_iter(|layer| {
+            let texels = with_mips(layer, scale);
+            done.fetch_add(1, Ordering::Relaxed);
+            texels
+        })
+        .collect();
+    let class = StreakClass {
+        scale,
+        extinction,
+        speed: class.speed(input.law),
+    };
+    (class, texels)
+}
+
+/// The drops of a class: a random number of them in each variant, as many in all variants together
+/// as there are on average.
+fn sample_streaks(input: &StreakInput, index: usize, class: &Class) -> [Vec<Streak>; VARIANTS] {
+    let exposure = f64::from(input.exposure.clamp(SHORTEST_EXPOSURE, LONGEST_EXPOSURE));
+    let (low, high) = class.drawn();
+    let mut random = Random::sequence(input.seed, index as u64);
+    let mut variants: [Vec<Streak>; VARIANTS] = Default::default();
+    let (mut before, mut rate_before) = (0.0, None);
+    for (density, rate) in BAKED_RATES.into_iter().enumerate() {
+        let count = class.count(rate);
+        for _ in 0..random.round((count - before) * VARIANTS as f64) {
+            let diameter = more_drops(rate, rate_before, low, high, &mut random);
+            let streak = Streak {
+                x: random.next_f64(),
+                y: random.next_f64(),
+                length: input.law.speed(diameter) * exposure,
+                radius: 0.5e-3 * diameter,
+                density,
+            };
+            // Across the border all variants are alike: one decides for all.
+            match (random.below(VARIANTS), streak.y + streak.length > 1.0) {
+                (variant, false) => variants[variant].push(streak),
+                (0, true) => variants.iter_mut().for_each(|streaks| streaks.push(streak)),
+                (_, true) => {}
+            }
+        }
+        (before, rate_before) = (count, Some(rate));
+    }
+    variants
+}
+
+/// The diameter of a drop that rain of a rate has and that of a lower rate has not.
+fn more_drops(rate: f64, lower: Option<f64>, low: f64, high: f64, random: &mut Random) -> f64 {
+    loop {
+        let diameter = sample_diameter(rate, low, high, random.next_f64());
+        // n(lower) / n(rate): the share of such drops that were there before.
+        let there = lower.map_or(0.0, |lower| ((slope(rate) - slope(lower)) * diameter).exp());
+        if random.next_f64() >= there {
+            return diameter;
+        }
+    }
+}
+
+fn draw(streaks: &[Streak]) -> Vec<Texel> {
+    let mut layer = vec![Texel::default(); WIDTH * HEIGHT];
+    let (width, height) = (WIDTH as f64, HEIGHT as f64);
+    for streak in streaks {
+        let area = FRAC_PI_4 * (2.0 * streak.radius).powi(2) * width * height;
+        let (left, right) = (streak.x - streak.radius, streak.x + streak.radius);
+        let (bottom, top) = (streak.y * height, (streak.y + streak.length) * height);
+        for column in (left * width).floor() as i64..=(right * width).floor() as i64 {
+            let part = |x: f64| disc_left_of((x / width - streak.x) / streak.radius);
+            let across = part(column as f64 + 1.0) - part(column as f64);
+            for row in bottom.floor() as i64..=top.floor() as i64 {
+                let inside = top.min(row as f64 + 1.0) - bottom.max(row as f64);
+                let along = inside.max(0.0) / (top - bottom);
+                // Rows of a texture run downwards.
+                let row = HEIGHT - 1 - row.rem_euclid(HEIGHT as i64) as usize;
+                let column = column.rem_euclid(WIDTH as i64) as usize;
+                let opacity = (area * across * along) as f32;
+                for density in &mut layer[row * WIDTH + column][streak.density..] {
+                    *density += opacity;
+                }
+            }
+        }
+    }
+    layer
+}
+
+/// The part of a unit disc that lies left of `x`.
+fn disc_left_of(x: f64) -> f64 {
+    let x = x.clamp(-1.0, 1.0);
+    0.5 + (x * (1.0 - x * x).sqrt() + x.asin()) / PI
+}
+
+/// All mip levels in 8 bits, each the mean of the one before.
+fn with_mips(mut layer: Vec<Texel>, scale: f32) -> Vec<u8> {
+    let mut texels = Vec::new();
+    for level in 0..MIP_LEVELS {
+        if level > 0 {
+            layer = halved(&layer, mip_size(level - 1));
+        }
+        quantise(&layer, scale, &mut texels);
+    }
+    texels
+}
+
+fn halved(layer: &[Texel], (width, height): (usize, usize)) -> Vec<Texel> {
+    let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
+    let (step_x, step_y) = (width / half_width, height / half_height);
+    let mut out = Vec::with_capacity(half_width * half_height);
+    for y in 0..half_height {
+        for x in 0..half_width {
+            let mut sum = Texel::default();
+            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let from = (y * step_y + dy % step_y) * width + x * step_x + dx % step_x;
+                for (sum, value) in sum.iter_mut().zip(layer[from]) {
+                    *sum += 0.25 * value;
+                }
+            }
+            out.push(sum);
+        }
+    }
+    out
+}
+
+/// To 8 bits; what is rounded off one texel is added to the next, so that the mean is kept.
+fn quantise(layer: &[Texel], scale: f32, out: &mut Vec<u8>) {
+    let factor = if scale > 0.0 { 255.0 / scale } else { 0.0 };
+    let mut left = Texel::default();
+    for texel in layer {
+        for (value, left) in texel.iter().zip(&mut left) {
+            let exact = value * factor + *left;
+            let rounded = exact.round().clamp(0.0, 255.0);
+            *left = exact - rounded;
+            out.push(rounded as u8);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
