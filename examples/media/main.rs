@@ -136,7 +136,7 @@ fn shelf(scenery: &mut Scenery, at: Vec3) {
     });
     scenery.commands.spawn((
         Mesh3d(board),
-        MeshMaterial3d(wood.clone()),
+        MeshMaterial3d(wood),
         Transform::from_translation(at + vec3(0.0, -0.1, -0.3)),
     ));
     let wall = scenery.meshes.add(Cuboid::new(width, PLACE.y, 0.1));

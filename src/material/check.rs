@@ -175,10 +175,10 @@ mod tests {
     fn bad_fields_are_named_and_clamped() {
         let cases: [(&str, fn(&mut FluidMaterial, f32)); 4] = [
             ("FluidMaterial::refractive_index", |m, v| {
-                m.refractive_index = v
+                m.refractive_index = v;
             }),
             ("FluidMaterial::perceptual_roughness", |m, v| {
-                m.perceptual_roughness = v
+                m.perceptual_roughness = v;
             }),
             ("FluidMaterial::thickness.softness", |m, v| {
                 m.thickness = Thickness::Accumulated { softness: v };

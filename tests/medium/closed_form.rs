@@ -27,7 +27,7 @@ fn relative(got: f32, wanted: f64) -> f64 {
     (f64::from(got) - wanted).abs() / wanted.abs().max(f64::from(f32::MIN_POSITIVE))
 }
 
-/// The grid of HARD_CASES, and finer steps about where the series ends.
+/// The grid of the hard cases, and finer steps about where the series ends.
 fn paths() -> Vec<[f32; 2]> {
     let densities = [0.0, 1e-9, 1e-6, 1e-3, 1.0, 1e3];
     let lengths = [0.0, 1e-6, 1.0, 1e6];
