@@ -103,8 +103,10 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Cell) -> Varying {
 
     var out: Varying;
     out.half_size = 0.5 * size;
-    // Its cross section, spread over what it covers.
-    out.opacity = 0.25 * PI * drop * drop / (size.x * size.y);
+    // Its cross section, spread over what it covers. Off the middle of the view, the screen is met
+    // at an angle, and it covers more of it.
+    let slant = select(1.0, length(middle) / view_depth, rain.perspective == 1u);
+    out.opacity = 0.25 * PI * drop * drop * slant / (size.x * size.y);
     out.view_depth = view_depth;
     let corner = vec2(f32(index & 1u), f32((index >> 1u) & 1u)) * 2.0 - 1.0;
     // Half a pixel more on each side, for the soft edge.
