@@ -6,10 +6,10 @@
 
 use std::process::ExitCode;
 
-use fluid_report::{Options, run};
+use fluid_report::{Options, run_apart};
 
 fn main() -> ExitCode {
-    match Options::parse_from(std::env::args_os()).and_then(|options| run(&options)) {
+    match Options::parse_from(std::env::args_os()).and_then(|options| run_apart(&options)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if error.exit_code() == 0 {

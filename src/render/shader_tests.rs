@@ -179,7 +179,10 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
 
 #[test]
 fn h34_h50_the_medium_equals_f64_on_the_gpu() {
-    let formula = Formula::new("medium::transmitted", "vec4(transmitted(in.x), 1.0)");
+    let formula = Formula::new(
+        "bindings::body\n#import bevy_fluid::render::medium::transmitted",
+        "vec4(transmitted(body.extinction, in.x), 1.0)",
+    );
     let distances = [0.0, 1e-6, 1e-3, 1.0, 1e6, f32::MAX, f32::INFINITY];
     let inputs = distances.map(|d| [d, 0.0, 0.0, 0.0]);
     for extinction in [[0.0, 1e-9, 1e-6], [1e-3, 1.0, 1e3], [1e30, 1e-30, 0.5]] {

@@ -39,6 +39,14 @@ pub enum ReportError {
         /// Why.
         reason: String,
     },
+    /// The part of a scene failed in a process of its own, which has said why.
+    #[error("no values in {}: {reason}", path.display())]
+    Part {
+        /// Its table.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
     /// Nothing renders, or not rightly.
     #[error(transparent)]
     Stage(#[from] StageError),
@@ -73,7 +81,7 @@ impl ReportError {
             Self::Arguments(error) => error.exit_code() as u8,
             Self::Unknown { .. } | Self::Write { .. } | Self::Particles { .. } => 2,
             Self::Stage(error) => error.exit_code(),
-            Self::Shape(_) | Self::Metric { .. } | Self::Plot { .. } => 1,
+            Self::Shape(_) | Self::Metric { .. } | Self::Part { .. } | Self::Plot { .. } => 1,
         }
     }
 }

@@ -100,16 +100,16 @@ mod tests {
         for (method, time, error) in [("a", 1.0, 3.0), ("b", 2.0, 4.0), ("c", 3.0, 1.0)] {
             for (quantity, region, value) in [("time_gpu", "all", time), ("flip", "all", error)] {
                 table.push(crate::Row {
-                    scene: "s",
+                    scene: "s".into(),
                     particles: 1,
                     width: 1,
                     height: 1,
                     method: method.into(),
                     parameters: String::new(),
-                    quantity,
-                    region,
+                    quantity: quantity.into(),
+                    region: region.into(),
                     value,
-                    unit: "1",
+                    unit: "1".into(),
                 });
             }
         }

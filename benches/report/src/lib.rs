@@ -22,6 +22,8 @@ mod thesis;
 mod times;
 mod truth;
 
+use std::{fs, process::Command};
+
 use fluid_stage::adapter_name;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -43,19 +45,71 @@ use truth::{Splats, Truth};
 /// written.
 pub fn run(options: &Options) -> Result<(), ReportError> {
     let mut table = Table::default();
-    let mut adapter = String::new();
-    for make in scenes::asked(options) {
-        let scene = make()?;
-        adapter = measure(&mut table, &scene, options)?;
+    let makers = scenes::asked(options).into_iter();
+    for scene in makers.filter_map(|name| scenes::make(options, name)) {
+        measure(&mut table, &scene?, options)?;
         // What is there so far, should a later scene fail.
         table.write(&options.out)?;
     }
-    plots::draw(&table, &options.out)?;
-    summary::write(&table, &adapter, &options.out)
+    if options.table_only {
+        return Ok(());
+    }
+    finish(&table, options)
 }
 
-/// Measures a scene and tells which adapter did it.
-fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<String, ReportError> {
+/// The same with a process for every scene, as software drivers keep some memory of every frame:
+/// runs this program again with other options.
+///
+/// # Errors
+/// As [`run`]; what fails in another process has said why by itself.
+pub fn run_apart(options: &Options) -> Result<(), ReportError> {
+    let names = scenes::asked(options);
+    if names.len() < 2 || options.table_only {
+        return run(options);
+    }
+    let mut table = Table::default();
+    let folder = options.out.join("part");
+    for name in names {
+        let failed = |reason: String| ReportError::Part {
+            path: folder.clone(),
+            reason,
+        };
+        let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
+        let mut part = Command::new(program);
+        part.args(["--table-only", "--scene", name, "--out"])
+            .arg(&folder);
+        part.args(options.quick.then_some("--quick"));
+        part.args(options.method.iter().flat_map(|name| ["--method", name]));
+        if let Some(size) = options.size {
+            part.args(["--size".into(), format!("{}x{}", size.x, size.y)]);
+        }
+        let status = part.status().map_err(|error| failed(error.to_string()))?;
+        if !status.success() {
+            return Err(failed(format!("{name} ended with {status}")));
+        }
+        table.read(&folder)?;
+        table.write(&options.out)?;
+    }
+    fs::remove_dir_all(&folder).map_err(|source| ReportError::Write {
+        path: folder,
+        source,
+    })?;
+    finish(&table, options)
+}
+
+fn finish(table: &Table, options: &Options) -> Result<(), ReportError> {
+    plots::draw(table, &options.out)?;
+    summary::write(table, &stage_adapter()?, &options.out)
+}
+
+/// The name of the adapter that renders.
+fn stage_adapter() -> Result<String, ReportError> {
+    let app = fluid_stage::headless_app(bevy::math::UVec2::ONE, |_| {})?;
+    Ok(adapter_name(&app))
+}
+
+/// Measures a scene.
+fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), ReportError> {
     let progress = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{prefix:20} {wide_bar} {pos}/{len} {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
@@ -99,7 +153,7 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<String
         times::measure(table, scene, &timed, &mut rig, turns, &progress)?;
     }
     progress.finish_with_message("done");
-    Ok(adapter_name(&rig.app))
+    Ok(())
 }
 
 /// Everything but the times.

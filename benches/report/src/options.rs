@@ -26,6 +26,9 @@ pub struct Options {
     /// Where the table, the plots and the summary go
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Only the table: what `run_apart` asks of the process of a scene
+    #[arg(long, hide = true)]
+    pub(crate) table_only: bool,
     /// What `cargo bench` adds; it means nothing here
     #[arg(long, hide = true)]
     bench: bool,

@@ -120,18 +120,24 @@ pub(crate) fn names() -> Vec<&'static str> {
     ENTRIES.iter().map(|entry| entry.name).collect()
 }
 
-/// The scenes that are asked for: a few without particles from files where it is to be quick.
-pub(crate) fn asked(
-    options: &Options,
-) -> Vec<impl FnOnce() -> Result<Scene, ReportError> + use<'_>> {
+/// The scenes that are asked for, by name: a few without particles from files where it is to be
+/// quick.
+pub(crate) fn asked(options: &Options) -> Vec<&'static str> {
     let wanted = |entry: &&Entry| {
         options.wants_scene(entry.name)
             && (entry.quick || !options.quick || !options.scene.is_empty())
     };
-    let makers = ENTRIES.iter().filter(wanted);
-    makers
-        .map(|entry| || (entry.make)(options, entry.name))
+    ENTRIES
+        .iter()
+        .filter(wanted)
+        .map(|entry| entry.name)
         .collect()
+}
+
+/// Makes a scene; `None` if there is none of this name.
+pub(crate) fn make(options: &Options, name: &str) -> Option<Result<Scene, ReportError>> {
+    let entry = ENTRIES.iter().find(|entry| entry.name == name)?;
+    Some((entry.make)(options, entry.name))
 }
 
 /// A body of the catalogue, in its own view.

@@ -5,15 +5,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, scenes::Scene};
 
+/// What the table is called.
+const FILE: &str = "speed_error.csv";
+
 /// One value. The columns of the CSV, in this order.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the scene.
-    pub scene: &'static str,
+    pub scene: String,
     /// Number of its particles.
     pub particles: usize,
     /// Width of the picture in pixels.
@@ -25,13 +28,13 @@ pub struct Row {
     /// Its parameters, where it has any that vary.
     pub parameters: String,
     /// What was measured.
-    pub quantity: &'static str,
+    pub quantity: String,
     /// Where in the picture: `all`, `interior`, `silhouette`, `grazing`.
-    pub region: &'static str,
+    pub region: String,
     /// How much.
     pub value: f64,
     /// Of what: `ms`, `r` (particle radii), `deg`, `1` …
-    pub unit: &'static str,
+    pub unit: String,
 }
 
 /// All values of a run.
@@ -67,16 +70,16 @@ impl Table {
         unit: &'static str,
     ) {
         self.push(Row {
-            scene: of.scene.name,
+            scene: of.scene.name.into(),
             particles: of.scene.positions.len(),
             width: of.scene.camera.size.x,
             height: of.scene.camera.size.y,
             method: of.method.into(),
             parameters: of.parameters.into(),
-            quantity,
-            region,
+            quantity: quantity.into(),
+            region: region.into(),
             value,
-            unit,
+            unit: unit.into(),
         });
     }
 
@@ -99,8 +102,8 @@ impl Table {
     }
 
     /// Scenes in the order they were measured.
-    pub(crate) fn scenes(&self) -> Vec<&'static str> {
-        let mut scenes: Vec<_> = self.rows.iter().map(|row| row.scene).collect();
+    pub(crate) fn scenes(&self) -> Vec<&str> {
+        let mut scenes: Vec<_> = self.rows.iter().map(|row| row.scene.as_str()).collect();
         scenes.dedup();
         scenes
     }
@@ -116,8 +119,21 @@ impl Table {
         methods
     }
 
+    /// Takes over the rows of a table that was written to a folder.
+    pub(crate) fn read(&mut self, folder: &Path) -> Result<(), ReportError> {
+        let path = folder.join(FILE);
+        let rows = csv::Reader::from_path(&path)
+            .and_then(|mut reader| reader.deserialize().collect::<Result<Vec<Row>, _>>());
+        let rows = rows.map_err(|error| ReportError::Part {
+            path,
+            reason: error.to_string(),
+        })?;
+        self.rows.extend(rows);
+        Ok(())
+    }
+
     pub(crate) fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
-        let path = folder.join("speed_error.csv");
+        let path = folder.join(FILE);
         let failed = |source| ReportError::Write {
             path: path.clone(),
             source,

@@ -2,8 +2,8 @@
 
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
-    device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
-    nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_from_device, view_ray,
+    depth_map, device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
+    nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_depth, view_from_device, view_ray,
 }
 #import bevy_fluid::render::medium::{reflected, transmitted}
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
@@ -157,12 +157,13 @@ fn in_liquid(kind: u32, position: vec3<f32>) -> bool {
     if !on_screen(pixel) {
         return false;
     }
-    let front = layer_depth(kind, FRONT, pixel);
-    let back = layer_depth(kind, BACK, pixel);
+    let map = depth_map(ndc_from_pixel(pixel));
+    let front = layer_depth(kind, FRONT, pixel, map);
+    let back = layer_depth(kind, BACK, pixel, map);
     let z = -position.z;
-    let to_back = back.z - z;
-    return front.there && back.there && z > front.z && to_back > 0.02 * body.radius
-        && (kind == BULK || to_back < 2.0 * body.radius);
+    let to_back = view_depth(map, back) - z;
+    return front > 0.0 && back > 0.0 && z > view_depth(map, front)
+        && to_back > 0.02 * body.radius && (kind == BULK || to_back < 2.0 * body.radius);
 }
 
 // Follows the path inside and outside until the budget is spent or nothing more is met.

@@ -193,18 +193,18 @@ fn polar_normal(in: EllipsoidVertex, a: vec4<f32>, ndc: vec2<f32>, depth: f32) -
 }
 
 // The line of sight through a point of the screen, about its point half way through the ellipsoid.
-struct Chord {
+struct DeviceChord {
     nearest: vec4<f32>,
     middle: f32,
     // Negative where it misses.
     disc: f32,
 }
 
-fn chord_at(in: EllipsoidVertex, offset: vec2<f32>, dd: f32) -> Chord {
+fn chord_at(in: EllipsoidVertex, offset: vec2<f32>, dd: f32) -> DeviceChord {
     let a = vec4(0.0, 0.0, 0.0, 1.0) + offset.x * in.x + offset.y * in.y;
     let middle = -form(a, in.d) / dd;
     let nearest = a + middle * in.d;
-    return Chord(nearest, middle, -form(nearest, nearest));
+    return DeviceChord(nearest, middle, -form(nearest, nearest));
 }
 
 // Both depths from one quadratic.
