@@ -110,7 +110,7 @@ fn change(app: &mut App, cast: &mut Cast, first_camera: Entity, frame: u32) {
         camera.remove::<FluidDebugView>();
     }
 
-    if frame % 6 == 0 {
+    if frame.is_multiple_of(6) {
         match cast.second_camera.take() {
             Some(camera) => {
                 world.despawn(camera);
@@ -138,7 +138,7 @@ fn change(app: &mut App, cast: &mut Cast, first_camera: Entity, frame: u32) {
         camera.viewport.as_mut().unwrap().physical_size = (size / 2).max(UVec2::ONE);
     }
 
-    if frame % 4 == 0 {
+    if frame.is_multiple_of(4) {
         if cast.fluids.len() > 2 {
             world.despawn(cast.fluids.remove(0));
         }

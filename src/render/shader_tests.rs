@@ -143,7 +143,7 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
         let angles = apart.as_flattened().iter().map(|apart| critical + apart);
         let angles = angles
             .chain([0.0, 1.57])
-            .filter(|a| (0.0..1.5708).contains(a));
+            .filter(|a| (0.0..std::f64::consts::FRAC_PI_2).contains(a));
         let inputs: Vec<_> = angles
             .map(|angle| [angle.sin() as f32, 0.0, -angle.cos() as f32, index as f32])
             .collect();

@@ -150,10 +150,7 @@ mod tests {
             }
             settle(&mut app).unwrap();
             let views = app.sub_app(RenderApp).world().iter_entities();
-            assert_eq!(
-                views.filter(|view| view.contains::<ViewBodies>()).count(),
-                0
-            );
+            assert_eq!(views.filter(EntityRef::contains::<ViewBodies>).count(), 0);
             // Fails if the GPU's validation has complained.
             capture(&mut app).unwrap()
         });

@@ -29,7 +29,7 @@ fn h44_directions_that_are_not_of_unit_length() {
     let view = View::new(64, PERSPECTIVE);
     let light = Transform::default().looking_to(vec3(-0.4, -1.0, -0.6), Vec3::Y);
     let mut app = show(&view, ScreenSpaceFluid::default(), |world| {
-        lit(world, light)
+        lit(world, light);
     });
     let straight = picture(&mut app);
     // A light that is scaled.
