@@ -4,8 +4,10 @@ use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
 /// Makes a camera draw particle fluids.
 ///
-/// The defaults are a good picture at a moderate price; [`ScreenSpaceFluid::FAST`] and
-/// [`ScreenSpaceFluid::THESIS`] are other points on that scale.
+/// The presets are points on the measured front of speed against error (bench `speed_error`): the
+/// default stands at its knee, [`ScreenSpaceFluid::FAST`] and [`ScreenSpaceFluid::ACCURATE`] to
+/// either side. Their docs give times relative to the default, at 320×240 on a software driver, and
+/// FLIP against a traced picture of a ball and of a half-filled box.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(DepthPrepass, Hdr)]
@@ -28,13 +30,15 @@ pub struct ScreenSpaceFluid {
 }
 
 impl ScreenSpaceFluid {
-    /// One refraction over separably smoothed depth.
+    /// One refraction over separably smoothed depth. Time 0.43 (box) to 0.66 (ball) of the
+    /// default's; FLIP 0.60 and 0.43 against its 0.53 and 0.26.
     pub const FAST: Self = Self {
         refractions: Refractions::One,
         ..Self::DEFAULT
     };
 
-    /// As near to the truth as the method gets.
+    /// As near to the truth as the method gets: smoothed twice, and searched in eight steps first.
+    /// Time 1.08 of the default's; FLIP 0.53 (box) and 0.25 (ball).
     pub const ACCURATE: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit {
             iterations: 2,
@@ -45,7 +49,7 @@ impl ScreenSpaceFluid {
         ..Self::DEFAULT
     };
 
-    /// The default.
+    /// The default: FLIP 0.53 (box) and 0.26 (ball), normals off by 1.3° in the median.
     pub const DEFAULT: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),
         refractions: Refractions::Four,
@@ -55,6 +59,8 @@ impl ScreenSpaceFluid {
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.
+    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 1.46 (box) and
+    /// 1.62 (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
         refractions: Refractions::Four,
@@ -65,6 +71,7 @@ impl ScreenSpaceFluid {
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
     /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
+    /// Time 2.0 (box) and 3.1 (ball) of the default's; FLIP 0.56 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
         refractions: Refractions::Two,
@@ -188,9 +195,9 @@ pub struct PlaneFit {
     /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 4.
     /// More: smoother between taps, at a linear (separable) or quadratic price.
     pub half_taps: u32,
-    /// How often the fit is repeated. Range 1..=8, default 3. More: smoother.
+    /// How often the fit is repeated. Range 1..=8, default 1. More: smoother.
     pub iterations: u32,
-    /// How large the window is. Default 0.65 radii. Larger: smoother, less detail.
+    /// How large the window is. Default 1.3 radii. Larger: smoother, less detail.
     pub window: Window,
     /// Depth difference at which a tap counts exp(-1). Unit: particle radii, range 0.5..=4,
     /// default 2. Higher: smoother, but steps in depth begin to leak into each other.
