@@ -4,22 +4,8 @@
     clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
     scene_view_depth, streak_sampler, streaks, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::{CLASSES, MERGED_FROM, STREAK_TEXELS, VARIANTS}
-
-struct Quad {
-    @location(0) center: vec3<f32>,
-    // Of the voxel.
-    @location(1) size: f32,
-    // Distance of the centre from the eye, across the fall.
-    @location(2) radius: f32,
-    // Height of the lower edge: above the height about which wind shears, and in textures.
-    @location(3) base: f32,
-    @location(4) fraction: f32,
-    @location(5) tile: i32,
-    @location(6) hash: u32,
-    // A bit for each light that reaches it.
-    @location(7) lamps: u32,
-    @location(8) level: u32,
+#import bevy_fluid::rain::draw::types::{
+    CLASSES, MERGED_FROM, STREAK_TEXELS, VARIANTS, Voxel,
 }
 
 struct Varying {
@@ -45,7 +31,7 @@ const LEAST: f32 = 1e-6;
 const STEEPEST: f32 = 0.15;
 
 @vertex
-fn vertex(@builtin(vertex_index) corner: u32, quad: Quad) -> Varying {
+fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
     var out: Varying;
     let ray = select(rain.forward, quad.center, rain.perspective == 1u);
     let side = normalize(cross(rain.axis, ray));

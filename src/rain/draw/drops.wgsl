@@ -4,20 +4,7 @@
     PI, clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
     scene_view_depth, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::SPEED_STEP
-
-// A cubic metre of air.
-struct Cell {
-    @location(0) center: vec3<f32>,
-    @location(1) size: f32,
-    @location(2) radius: f32,
-    @location(3) base: f32,
-    @location(4) fraction: f32,
-    @location(5) tile: i32,
-    @location(6) hash: u32,
-    @location(7) lamps: u32,
-    @location(8) level: u32,
-}
+#import bevy_fluid::rain::draw::types::{SPEED_STEP, Voxel}
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -64,7 +51,7 @@ fn nothing() -> Varying {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, cell: Cell) -> Varying {
+fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let slot = hash(cell.hash ^ hash(index / 4u));
     let diameter = sample_diameter(uniform_of(slot));
     let falls = speed(diameter);

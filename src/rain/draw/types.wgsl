@@ -90,3 +90,19 @@ const VARIANTS: u32 = 4u;
 const STREAK_TEXELS: vec2<f32> = vec2(512.0, 256.0);
 // mm.
 const SPEED_STEP: f32 = 0.1;
+
+// A voxel of rain as it comes to the vertex shaders, of streaks and of drops alike.
+struct Voxel {
+    @location(0) center: vec3<f32>,
+    @location(1) size: f32,
+    // Distance of the centre from the eye, across the fall.
+    @location(2) radius: f32,
+    // Height of the lower edge: above the height about which wind shears, and in textures.
+    @location(3) base: f32,
+    @location(4) fraction: f32,
+    @location(5) tile: i32,
+    @location(6) hash: u32,
+    // A bit for each light that reaches it.
+    @location(7) lamps: u32,
+    @location(8) level: u32,
+}

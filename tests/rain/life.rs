@@ -1,0 +1,239 @@
+//! Rain in the life of an app: cameras, settings, sizes, and no rain at all.
+
+use super::*;
+
+#[test]
+fn a_game_without_rain_pays_nothing() {
+    let mut plain = headless_app(VIEW.size, |app| {
+        app.world_mut().spawn((VIEW.plain_camera(), UNIT_EXPOSURE));
+        spawn_box(
+            app.world_mut(),
+            Vec3::ONE,
+            Transform::from_xyz(0.0, 50.0, -4.0),
+        );
+    })
+    .unwrap();
+    settle(&mut plain).unwrap();
+    let plain = picture(&mut plain);
+
+    let mut app = headless_app(VIEW.size, |app| {
+        app.add_plugins(RainPlugin {
+            synchronous_bake: true,
+        });
+        app.world_mut().spawn((VIEW.plain_camera(), UNIT_EXPOSURE));
+        spawn_box(
+            app.world_mut(),
+            Vec3::ONE,
+            Transform::from_xyz(0.0, 50.0, -4.0),
+        );
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let nothing = |app: &App| {
+        assert_eq!(quads(app), None);
+        let spans = gpu_spans(app);
+        assert!(!spans.iter().any(|span| span.contains("rain")), "{spans:?}");
+        assert!(
+            !spans.iter().any(|span| span.contains("transparent")),
+            "{spans:?}"
+        );
+    };
+    nothing(&app);
+    assert!(
+        !app.world().resource::<BakedStreaks>().is_settled(),
+        "nothing is baked"
+    );
+    assert!(picture(&mut app) == plain);
+    // Rain of no rate is none.
+    for rate in [0.0, -1.0, f32::NAN] {
+        let camera = only::<Camera3d>(&mut app);
+        app.world_mut()
+            .entity_mut(camera)
+            .insert(Rain::falling(rate));
+        settle(&mut app).unwrap();
+        nothing(&app);
+        assert!(picture(&mut app) == plain, "{rate}");
+    }
+    let camera = only::<Camera3d>(&mut app);
+    app.world_mut().entity_mut(camera).insert(Rain::HEAVY);
+    settle(&mut app).unwrap();
+    assert!(picture(&mut app) != plain);
+    app.world_mut().entity_mut(camera).remove::<Rain>();
+    settle(&mut app).unwrap();
+    assert_eq!(quads(&app), None);
+    assert!(picture(&mut app) == plain);
+}
+
+#[test]
+fn the_same_seed_rains_the_same_and_another_does_not() {
+    let rain = || {
+        let mut app = show_plain(white_rain(20.0, 10.0));
+        set_time_step(&mut app, Duration::from_millis(16));
+        step(&mut app, 5);
+        app
+    };
+    let (a, mut b) = (rain(), rain());
+    let first = radiance(&a).bytes;
+    assert!(first == radiance(&b).bytes);
+    step(&mut b, 1);
+    assert!(first != radiance(&b).bytes, "nothing falls");
+    b.world_mut().resource_mut::<RainStreaks>().seed = 1;
+    set_time_step(&mut b, Duration::ZERO);
+    settle(&mut b).unwrap();
+    assert!(first != radiance(&b).bytes);
+}
+
+#[test]
+fn rates_beyond_all_measure_are_clamped() {
+    let of = |rate| radiance(&show_plain(white_rain(rate, 5.0))).bytes;
+    let most = of(200.0);
+    assert!(most == of(1e6));
+    assert!(most == of(f32::INFINITY));
+    assert!(most != of(100.0));
+}
+
+#[test]
+fn the_camera_may_jump_a_kilometre() {
+    let mut app = show_plain(white_rain(20.0, 5.0));
+    let before = mean(&radiance(&app));
+    let camera = only::<Camera3d>(&mut app);
+    for jump in [
+        vec3(1000.0, 0.0, 0.0),
+        vec3(0.0, 1000.0, -1000.0),
+        vec3(1e5, -1e4, 1e5),
+    ] {
+        app.world_mut()
+            .get_mut::<Transform>(camera)
+            .unwrap()
+            .translation += jump;
+        step(&mut app, 1);
+        let after = mean(&radiance(&app));
+        assert!(
+            (after / before - 1.0).abs() < 0.25,
+            "{jump}: {before}, {after}"
+        );
+    }
+}
+
+#[test]
+fn orthographic_cameras_see_rain_all_over() {
+    let view = View {
+        lens: Lens::Orthographic {
+            height: 6.0,
+            near: 0.0,
+            far: 100.0,
+        },
+        ..VIEW
+    };
+    let mut app = show(&view, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
+    let ratio = optical_depth(&mut app, 12) / (extinction(20.0) * 10.0);
+    println!("{ratio:.4}");
+    assert!((ratio - 1.0).abs() < 0.06, "{ratio}");
+    for x in 0..4 {
+        let data = radiance(&app);
+        let column = (40 * x..40 * (x + 1)).flat_map(|x| (0..120).map(move |y| (x, y)));
+        assert!(column.map(|(x, y)| data.f16x4(x, y)[0]).sum::<f32>() > 0.0);
+    }
+}
+
+#[test]
+fn two_cameras_see_the_same_rain() {
+    let half = |x: u32| Camera {
+        viewport: Some(Viewport {
+            physical_position: uvec2(x, 0),
+            physical_size: uvec2(80, 120),
+            ..default()
+        }),
+        order: x as isize,
+        clear_color: if x == 0 {
+            ClearColorConfig::Custom(Color::BLACK)
+        } else {
+            ClearColorConfig::None
+        },
+        ..default()
+    };
+    let mut app = show_plain(white_rain(50.0, 10.0));
+    let first = only::<Camera3d>(&mut app);
+    app.world_mut().entity_mut(first).insert(half(0));
+    app.world_mut()
+        .spawn(camera(&VIEW, white_rain(50.0, 10.0)))
+        .insert(half(80));
+    settle(&mut app).unwrap();
+    let image = picture(&mut app);
+    let (mut lit, mut differ) = (0, 0);
+    for y in 0..120 {
+        for x in 0..80 {
+            let (a, b) = (image.get_pixel(x, y).0[0], image.get_pixel(x + 80, y).0[0]);
+            lit += u32::from(a > 5);
+            differ += u32::from(a.abs_diff(b) > 2);
+        }
+    }
+    assert!(lit > 1000 && differ == 0, "{lit} lit, {differ} differ");
+}
+
+#[test]
+fn sizes_and_samples_may_change() {
+    let mut app = show_plain(white_rain(20.0, 5.0));
+    let camera = only::<Camera3d>(&mut app);
+    for (size, msaa) in [
+        (uvec2(1, 1), Msaa::Off),
+        (uvec2(33, 7), Msaa::Sample4),
+        (uvec2(300, 200), Msaa::Off),
+        (uvec2(160, 120), Msaa::Sample4),
+    ] {
+        resize(&mut app, size).unwrap();
+        app.world_mut().entity_mut(camera).insert(msaa);
+        settle(&mut app).unwrap();
+        assert!(validation_errors(&app).is_empty());
+    }
+    let multisampled = mean(&radiance(&app));
+    app.world_mut().entity_mut(camera).insert(Msaa::Off);
+    settle(&mut app).unwrap();
+    let single = mean(&radiance(&app));
+    assert!(
+        (multisampled / single - 1.0).abs() < 0.05,
+        "{multisampled}, {single}"
+    );
+}
+
+/// Beyond the streaks the scene fades as e^(−β way).
+#[test]
+fn the_background_fades_beyond_the_streaks() {
+    let mut app = show_plain(white_rain(50.0, 1.0));
+    let near = mean(&radiance(&app));
+    let camera = only::<Camera3d>(&mut app);
+    app.world_mut().entity_mut(camera).insert(Rain {
+        extent: 201.0,
+        ..white_rain(50.0, 1.0)
+    });
+    settle(&mut app).unwrap();
+    let far = mean(&radiance(&app));
+    let expected = 1.0 - (-extinction(50.0) * 200.0).exp();
+    assert!(
+        (far - near - expected).abs() < 0.01,
+        "{near}, {far}, {expected}"
+    );
+}
+
+/// While textures are drawn in the background, frames go on.
+#[test]
+fn textures_come_without_being_waited_for() {
+    let mut app = headless_app(VIEW.size, |app| {
+        app.add_plugins(RainPlugin::default());
+        app.world_mut().spawn(camera(&VIEW, Rain::HEAVY));
+    })
+    .unwrap();
+    let settled = |app: &App| app.world().resource::<BakedStreaks>().is_settled();
+    step(&mut app, 1);
+    assert!(!settled(&app) && quads(&app).is_none());
+    for _ in 0..2000 {
+        if settled(&app) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+        step(&mut app, 1);
+    }
+    assert!(settled(&app));
+    settle(&mut app).unwrap();
+    assert!(quads(&app).is_some());
+}
