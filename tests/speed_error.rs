@@ -113,6 +113,11 @@ fn a_quick_run_writes_a_table_without_gaps_and_is_as_exact_as_aimed_for() {
     // Half floats hold light to a two-thousandth.
     assert!(most(["*", "furnace", "*", "furnace_max", "all"]) <= 1e-3);
 
+    assert!(most(["*", "closed-form", "*", "relative_error_max", "all"]) <= 1e-6);
+    let thickness = |way| most(["two-puffs", "thickness", way, "thickness_rmse", "behind"]);
+    // The gap between the puffs is sixteen radii deep, and full where only layers are known.
+    assert!(thickness("summed, softness 0") < 0.5 * thickness("layers"));
+
     let flip = |scene, method, parameters| most([scene, method, parameters, "flip", "all"]);
     assert!(flip("sphere", "refractions", "2") < flip("sphere", "refractions", "1"));
     let pool = "pool-and-droplets";

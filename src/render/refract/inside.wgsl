@@ -4,8 +4,8 @@
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::optics::environment_sampler
 
-@group(1) @binding(7) var diffuse_map: texture_cube<f32>;
-@group(1) @binding(8) var thickness: texture_2d<f32>;
+@group(1) @binding(6) var diffuse_map: texture_cube<f32>;
+@group(1) @binding(7) var thickness: texture_2d<f32>;
 
 // The mean over all directions of the light that falls on the scene.
 fn even_light() -> vec3<f32> {

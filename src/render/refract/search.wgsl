@@ -4,7 +4,7 @@
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{pixel_from_ndc, view_depth}
 #import bevy_fluid::render::refract::layers::{
-    BACK, FRONT, clamp_to_view, layer_depth, on_screen, scene_depth_at,
+    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at,
 }
 #import bevy_fluid::render::track::{
     Track, device_at, distance_from_s, in_device_depth, s_from_distance, tolerance, track_of, w_at,
@@ -66,24 +66,20 @@ fn gap_at(to: Target, track: Track, s: f32) -> Gap {
         out.value = select(-1.0, depth - at.z, out.known);
         return out;
     }
+    let depths = layer_depths(to.kind, asked, track.map);
     if !to.leaving {
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        out.known = front > 0.0 && out.seen;
-        out.value = select(-1.0, front - at.z, out.known);
+        out.known = depths.x > 0.0 && out.seen;
+        out.value = select(-1.0, depths.x - at.z, out.known);
         return out;
     }
-    let back = layer_depth(to.kind, BACK, asked, track.map);
-    if back <= 0.0 {
+    if depths.y <= 0.0 {
         return out;
     }
     out.known = true;
-    out.value = back - at.z;
-    if to.both {
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        if front > 0.0 && at.z - front > out.value {
-            out.value = at.z - front;
-            out.side = FRONT;
-        }
+    out.value = depths.y - at.z;
+    if to.both && depths.x > 0.0 && at.z - depths.x > out.value {
+        out.value = at.z - depths.x;
+        out.side = FRONT;
     }
     return out;
 }
@@ -265,10 +261,9 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
     if to.both {
         // On a surface by construction: take the first step on trust.
         let asked = clamp_to_view(pixel_from_ndc(track.start.xy));
-        let back = layer_depth(to.kind, BACK, asked, track.map);
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        let deep = view_depth(track.map, back) - view_depth(track.map, front);
-        guess = max(guess, select(0.0, deep, front > 0.0));
+        let depths = layer_depths(to.kind, asked, track.map);
+        let deep = view_depth(track.map, depths.y) - view_depth(track.map, depths.x);
+        guess = max(guess, select(0.0, deep, depths.x > 0.0));
         start.value = min(start.value, -in_device_depth(track, 0.01 * body.radius, track.start.z));
     } else if to.leaving && start.value >= -start.near {
         // Thinner than can be told.
