@@ -53,7 +53,8 @@ fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
 #ifdef SEVERAL
     let t = dot(body.behind.xyz - position, direction);
     let device = device_from_view(position + t * direction);
-    if body.behind.w > 0.0 && t > 0.0 && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
+    let is_there = (body.behind.w > 0.0) & (t > 0.0);
+    if is_there && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
         let pixel = pixel_from_ndc(device.xy);
         let painted = color_at(pixel);
         if nearest_scene_depth(vec2<i32>(pixel)) <= 0.0

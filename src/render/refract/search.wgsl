@@ -166,21 +166,21 @@ fn refine(to: Target, track: Track, start: Bracket, left: i32) -> Found {
     return Found(status, distance_from_s(track, b.high), b.high_gap.side);
 }
 
+// Rays that have come so far meet nothing. Unit: m.
+const FARTHEST: f32 = 1e30;
+
 // Expanding steps until the gap changes sign, then `refine`. `guess` is a distance.
 fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
     var b = Bracket(0.0, start, 0.0, start);
-    var left = EVALUATIONS;
+    let coarse = i32(body.coarse_samples);
+    var left = EVALUATIONS + coarse;
     var t = 0.0;
-    var step = guess;
-    if body.coarse_samples > 0u {
-        // As far as twice the guess, evenly.
-        step = 2.0 * guess / f32(body.coarse_samples);
-        left += i32(body.coarse_samples);
-    }
+    // As far as twice the guess, evenly.
+    var step = select(guess, 2.0 * guess / f32(coarse), coarse > 0);
     // The last three evaluations are kept for refining.
     let expansions = left - 3;
     var bracketed = false;
-    for (var i = 0; i < expansions; i += 1) {
+    for (var i = 0; (i < expansions) & (t < FARTHEST); i += 1) {
         t += step;
         let s = s_from_distance(track, t);
         let gap = gap_at(to, track, s);
@@ -199,7 +199,7 @@ fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
         if !gap.seen && !to.leaving {
             break;
         }
-        if u32(i + 1) >= body.coarse_samples {
+        if i + 1 >= coarse {
             step = max(step, t);
         }
     }
