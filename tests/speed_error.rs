@@ -94,7 +94,7 @@ fn a_quick_run_writes_a_table_without_gaps_and_is_as_exact_as_aimed_for() {
             most([
                 scene,
                 "plane-fit-separable",
-                "9x9 x1 1.3r",
+                "11x11 x1 1.7r",
                 quantity,
                 region,
             ])

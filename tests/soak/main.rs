@@ -63,10 +63,17 @@ fn soak(duration: Duration) {
     );
     for (whose, first, last) in first.beside(last) {
         let growth = 100.0 * (last / first - 1.0);
-        println!("{whose}: {:.2}, {:.2} ({growth:+.2} %)", first / MEBIBYTE, last / MEBIBYTE);
+        println!(
+            "{whose}: {:.2}, {:.2} ({growth:+.2} %)",
+            first / MEBIBYTE,
+            last / MEBIBYTE
+        );
     }
     for (whose, first, last) in first.beside(last) {
-        assert!(last < 1.01 * first, "{whose}: {first} grows to {last} bytes");
+        assert!(
+            last < 1.01 * first,
+            "{whose}: {first} grows to {last} bytes"
+        );
     }
 
     for entity in cast.fluids.drain(..).chain(cast.second_camera) {

@@ -38,7 +38,8 @@ impl Memory {
     }
 
     pub(crate) fn mean(samples: &[Self]) -> Self {
-        let mean = |of: fn(&Self) -> f64| samples.iter().map(of).sum::<f64>() / samples.len() as f64;
+        let mean =
+            |of: fn(&Self) -> f64| samples.iter().map(of).sum::<f64>() / samples.len() as f64;
         Self {
             heap: mean(|memory| memory.heap),
             gpu: mean(|memory| memory.gpu),

@@ -158,7 +158,7 @@ pub(crate) fn smoothings(quick: bool) -> Vec<Method> {
     for (half_taps, iterations, radii) in SEPARABLE_GRID {
         methods.push(fit(Separable, half_taps, iterations, Window::Radii(radii)));
     }
-    for (half_taps, iterations, radii) in [(2, 2, 1.3), (4, 2, 0.65), (4, 3, 0.65), (4, 3, 1.0)] {
+    for (half_taps, iterations, radii) in [(4, 1, 1.7), (2, 2, 1.3), (4, 2, 0.65), (4, 3, 1.0)] {
         methods.push(fit(
             DeviceDepth,
             half_taps,
@@ -207,20 +207,19 @@ pub(crate) fn drop_twins(methods: &mut Vec<Method>) {
 }
 
 /// Half taps, iterations, half window in radii.
-const SEPARABLE_GRID: [(u32, u32, f32); 15] = [
+const SEPARABLE_GRID: [(u32, u32, f32); 14] = [
     (2, 1, 1.3),
     (3, 1, 1.3),
+    (4, 1, 1.3),
+    (4, 1, 1.7),
+    (4, 1, 2.3),
+    (6, 1, 2.0),
     (2, 2, 0.65),
     (2, 2, 1.3),
     (3, 2, 1.0),
-    (3, 3, 0.65),
-    (3, 3, 1.0),
-    (4, 1, 1.0),
-    (4, 1, 1.3),
-    (4, 1, 1.7),
     (4, 2, 0.65),
     (4, 2, 1.0),
-    (4, 2, 1.3),
+    (3, 3, 0.65),
     (4, 3, 1.0),
     (4, 4, 0.65),
 ];

@@ -2,7 +2,7 @@
 
 use std::{fs, path::PathBuf};
 
-use bevy::math::{DVec3, UVec2, Vec3, dvec3, uvec2};
+use bevy::math::{DVec3, UVec2, Vec3, dvec2, dvec3, uvec2};
 use fluid_reference::{Camera, Lens, Surface, scene};
 
 use crate::{Options, ReportError, surroundings::Surroundings};
@@ -179,10 +179,20 @@ fn body(options: &Options, name: &'static str, of: scene::Scene) -> Scene {
     }
 }
 
-/// A plane tilted by some degrees, from afar, so many pixels for a particle's radius.
+/// A plane tilted by some degrees, from afar, so many pixels for a particle's radius. Its borders
+/// are out of view: they are no plane.
 fn plane(options: &Options, name: &'static str, degrees: f64, pixels: f64) -> Scene {
     let side = if options.quick { 128 } else { 240 };
-    close_up(name, scene::tilted_plane(RADIUS, degrees), side, pixels)
+    let seen = 0.5 * f64::from(side) * RADIUS / pixels;
+    // What is nearer to the eye than the middle needs less, what is farther more.
+    let along = seen / degrees.to_radians().cos();
+    let half = dvec2(1.0 + along / FAR, 1.0) * dvec2(seen, 1.6 * along) + 4.0 * RADIUS;
+    close_up(
+        name,
+        scene::tilted_plate(RADIUS, degrees, half),
+        side,
+        pixels,
+    )
 }
 
 /// A ball of ten particle radii, whole.
