@@ -1,6 +1,9 @@
 //! Whose memory it is: Rust's, the GPU's, and all that the process holds.
 
-use std::alloc::System;
+use std::{
+    alloc::System,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
 
 use bevy::{prelude::*, render::renderer::RenderDevice};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
@@ -10,6 +13,12 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 static RUST: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 pub(crate) const MEBIBYTE: f64 = 1_048_576.0;
+
+/// Memory is counted for the whole process: one test at a time.
+pub(crate) fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Bytes in use.
 #[derive(Clone, Copy, Debug)]

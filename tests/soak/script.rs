@@ -5,7 +5,7 @@ use bevy_fluid::{
     Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NormalAverage, PlaneFit, Refractions,
     ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, prelude::*,
 };
-use fluid_stage::resize;
+use fluid_stage::{headless_app, resize, step, validation_errors};
 
 use crate::common::*;
 
@@ -63,9 +63,10 @@ pub(crate) fn particles(frame: u32, count: usize) -> impl Iterator<Item = Vec3> 
     })
 }
 
-pub(crate) fn start(size: UVec2) -> App {
+/// An app for the script to play in; without the plugin it is Bevy alone, with the same entities.
+pub(crate) fn start(with_fluids: bool) -> App {
     let view = View {
-        size,
+        size: SIZES[0],
         ..View::new(
             64,
             Lens::Perspective {
@@ -74,22 +75,73 @@ pub(crate) fn start(size: UVec2) -> App {
             },
         )
     };
-    show(&view, ScreenSpaceFluid::default(), |world| {
+    let mut app = headless_app(view.size, |app| {
+        if with_fluids {
+            app.add_plugins(FluidPlugin::default());
+        }
+        let world = app.world_mut();
+        world.spawn(view.camera(ScreenSpaceFluid::default()));
         world.spawn((DirectionalLight::default(), Transform::IDENTITY));
         let wall = Transform::from_xyz(0.0, 0.4, -8.0);
         spawn_box(world, vec3(3.0, 1.0, 0.1), wall);
     })
+    .unwrap();
+    settle(&mut app).unwrap();
+    app
 }
 
 /// What comes and goes.
 #[derive(Default)]
-pub(crate) struct Cast {
-    pub(crate) second_camera: Option<Entity>,
-    pub(crate) fluids: Vec<Entity>,
+struct Cast {
+    second_camera: Option<Entity>,
+    fluids: Vec<Entity>,
+}
+
+/// An app in which the script is played.
+pub(crate) struct Play {
+    pub(crate) app: App,
+    cast: Cast,
+    first_camera: Entity,
+    pub(crate) cycles: u32,
+}
+
+impl Play {
+    pub(crate) fn new(with_fluids: bool) -> Self {
+        let mut app = start(with_fluids);
+        let first_camera = only::<Camera3d>(&mut app);
+        Self {
+            app,
+            cast: Cast::default(),
+            first_camera,
+            cycles: 0,
+        }
+    }
+
+    /// Plays the whole script once; no frame may be invalid.
+    pub(crate) fn cycle(&mut self) {
+        for frame in 0..CYCLE {
+            change(&mut self.app, &mut self.cast, self.first_camera, frame);
+            step(&mut self.app, 1);
+        }
+        assert_eq!(validation_errors(&self.app), [""; 0]);
+        self.cycles += 1;
+    }
+
+    /// The app with its first camera alone.
+    pub(crate) fn end(mut self) -> App {
+        let world = self.app.world_mut();
+        for entity in self.cast.fluids.drain(..).chain(self.cast.second_camera) {
+            world.despawn(entity);
+        }
+        world
+            .entity_mut(self.first_camera)
+            .remove::<FluidDebugView>();
+        self.app
+    }
 }
 
 /// Everything that changes in a frame; the same in every cycle.
-pub(crate) fn change(app: &mut App, cast: &mut Cast, first_camera: Entity, frame: u32) {
+fn change(app: &mut App, cast: &mut Cast, first_camera: Entity, frame: u32) {
     let frame = frame % CYCLE;
     let mut random = Random(u64::from(frame) * 7919 + 1);
     let size = SIZES[(frame / 5) as usize % SIZES.len()];
