@@ -21,19 +21,20 @@
 //!
 //! - A streak's length follows the exposure time, its opacity keeps the light a drop takes
 //!   ([`drops::extinction`]) whatever the exposure.
-//! - A column of falling billboards is one standing billboard whose textures fall, each at its own
-//!   speed: all diameters in one draw of one layer.
-//! - Voxels are half a metre wide near the eye, and from 2 m on twice as wide each time the distance
-//!   doubles: the cost grows with the logarithm of the distance. There, where a streak is a pixel
-//!   wide, drops of all diameters fall together.
+//! - Within 2 m drops are drawn one by one, each at its own place and speed: there streaks are told
+//!   apart. That is both truer and cheaper than many layers of small voxels.
+//! - A column of falling billboards is one standing billboard whose texture falls: all drops in one
+//!   draw of one layer.
+//! - Voxels are two metres wide, and from 6 m on twice as wide each time the distance doubles: the
+//!   cost grows with the logarithm of the distance.
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
-//!   depth, are mixed from one texel.
+//!   depth, are mixed from one texel, and pixels vary over time as they should.
 //!
 //! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs.
 
 mod bake;
-pub mod classes;
 mod clock;
+pub mod densities;
 mod draw;
 pub mod drops;
 pub mod phase;

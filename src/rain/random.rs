@@ -5,16 +5,8 @@
 pub(crate) struct Random(u64);
 
 impl Random {
-    #[cfg(test)]
     pub(crate) fn new(seed: u64) -> Self {
         Self(seed)
-    }
-
-    /// One of several independent sequences of a seed.
-    pub(crate) fn sequence(seed: u64, index: u64) -> Self {
-        let mut random = Self(seed ^ index.wrapping_mul(0xD134_2543_DE82_EF95));
-        random.next();
-        random
     }
 
     fn next(&mut self) -> u64 {

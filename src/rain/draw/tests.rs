@@ -17,7 +17,6 @@ use super::{
 };
 use crate::rain::{
     RainPlugin,
-    classes::CLASSES,
     streaks::{HEIGHT, VARIANTS, WIDTH},
 };
 
@@ -60,11 +59,10 @@ fn every_part_of_rain_is_made() {
 fn shaders_know_the_same_numbers() {
     let types = include_str!("types.wgsl");
     for line in [
-        format!("const CLASSES: u32 = {CLASSES}u;"),
         format!("const VARIANTS: u32 = {VARIANTS}u;"),
         format!("vec2({WIDTH}.0, {HEIGHT}.0)"),
     ] {
         assert!(types.contains(&line), "{line}");
     }
-    assert_eq!(size_of::<GpuQuad>(), 44);
+    assert_eq!(size_of::<GpuQuad>(), 40);
 }
