@@ -15,7 +15,8 @@ use bevy::{
 use bevy_fluid::{
     prelude::*,
     rain::{
-        BakedStreaks, Exposure, RainMethod, RainQuads, RainShelter, RainStreaks, drops::extinction,
+        BakedStreaks, Exposure, RainMethod, RainQuads, RainShelter, RainStreaks,
+        drops::{LARGEST, SMALLEST, extinction, extinction_between},
         phase::phase,
     },
 };
@@ -156,14 +157,60 @@ fn rain_takes_as_much_light_as_its_drops() {
 
 #[test]
 fn drops_one_by_one_take_as_much() {
+    for wind in [Vec2::ZERO, vec2(6.0, -5.0)] {
+        let rain = Rain {
+            method: RainMethod::PerDrop,
+            wind,
+            ..white_rain(10.0, 4.0)
+        };
+        let mut app = show_plain(rain);
+        // Streaks that reach nearer than the near plane are left out: half of the way that wind takes
+        // them along the view, on average over its directions, comes on top of it.
+        let approach = f64::from(wind.length()) / 60.0 * core::f64::consts::FRAC_2_PI;
+        let way = 4.0 - 0.05 - 0.5 * approach;
+        let drawn = extinction_between(10.0, SMALLEST, LARGEST) * way;
+        let ratio = optical_depth(&mut app, 96) / drawn;
+        println!("{wind}: {ratio:.4}");
+        assert!((ratio - 1.0).abs() < 0.03, "{wind}: {ratio}");
+    }
+}
+
+/// Streaks of drops near the eye lean the way the wind blows them.
+#[test]
+fn wind_slants_the_streaks_of_near_drops() {
+    // Across the view, and only what is near.
     let rain = Rain {
-        method: RainMethod::PerDrop,
-        ..white_rain(10.0, 4.0)
+        distance: 1.5,
+        wind: vec2(8.0, 0.0),
+        ..white_rain(100.0, 1.5)
     };
-    let mut app = show_plain(rain);
-    let ratio = optical_depth(&mut app, 48) / (extinction(10.0) * 4.0);
-    println!("{ratio:.4}");
-    assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
+    let slant = |rain: Rain| {
+        let mut app = show(&VIEW, rain, 1.0 / 60.0, |_| {});
+        set_time_step(&mut app, Duration::from_secs_f64(0.37));
+        let (mut along, mut against) = (0.0, 0.0);
+        for _ in 0..6 {
+            step(&mut app, 1);
+            let data = radiance(&app);
+            let at = |x: u32, y: u32| f64::from(data.f16x4(x, y)[0]);
+            for y in 8..data.size.y - 8 {
+                for x in 8..data.size.x - 8 {
+                    // Down is +y: drops that go right as they fall lean from upper left to lower right.
+                    along += at(x, y) * at(x + 5, y + 4);
+                    against += at(x, y) * at(x + 5, y - 4);
+                }
+            }
+        }
+        along / against
+    };
+    let (right, left) = (
+        slant(rain),
+        slant(Rain {
+            wind: vec2(-8.0, 0.0),
+            ..rain
+        }),
+    );
+    println!("{right:.2}, {left:.2}");
+    assert!(right > 1.3 && left < 1.0 / 1.3, "{right}, {left}");
 }
 
 /// Also where voxels are of several sizes, and where rain leans.
