@@ -37,10 +37,14 @@
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
+pub mod diagnostics;
+#[cfg(feature = "inspector")]
+pub mod inspector;
 mod material;
 mod medium;
 mod particles;
 pub mod rain;
+mod range;
 pub mod render;
 mod schedule;
 mod settings;
@@ -48,11 +52,15 @@ pub mod shape;
 
 use bevy::prelude::*;
 
+#[cfg(feature = "inspector")]
+pub use crate::inspector::FluidInspectorPlugin;
 pub use crate::{
+    diagnostics::FluidDiagnosticsPlugin,
     material::{FluidMaterial, MaterialError, Thickness},
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
     rain::{Rain, RainPlugin},
+    range::SettingRange,
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -100,7 +108,12 @@ impl Plugin for FluidPlugin {
                 layer_blending: self.layer_blending,
                 shortcuts: self.shortcuts,
             },
-        ));
+        ))
+        .register_type::<FluidParticles>()
+        .register_type::<FluidMaterial>()
+        .register_type::<SurfaceKernel>()
+        .register_type::<ScreenSpaceFluid>()
+        .register_type::<FluidDebugView>();
     }
 }
 
