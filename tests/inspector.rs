@@ -14,11 +14,13 @@ use bevy_egui::{
     input::{EguiInputEvent, FocusedNonWindowEguiContext},
 };
 use bevy_fluid::{
-    FluidDebugView, FluidInspectorPlugin, Refractions, ScreenSpaceFluid, Smoothing, diagnostics,
+    FluidDebugView, FluidInspectorPlugin, Refractions, ScreenSpaceFluid, Smoothing, SurfaceKernel,
+    diagnostics,
     inspector::{FluidInspector, inspector_wants_pointer},
     prelude::*,
 };
-use fluid_stage::{ball, capture, headless_app, settle, step, validation_errors};
+use core::time::Duration;
+use fluid_stage::{ball, capture, headless_app, set_time_step, settle, step, validation_errors};
 
 const SIZE: UVec2 = uvec2(640, 480);
 
@@ -51,6 +53,8 @@ fn show() -> App {
     })
     .unwrap();
     settle(&mut app).unwrap();
+    // Windows fade in and lists scroll smoothly.
+    set_time_step(&mut app, Duration::from_millis(50));
     app
 }
 
@@ -169,7 +173,9 @@ fn widgets(app: &mut App) -> Vec<Widget> {
 
 #[track_caller]
 fn find(app: &mut App, role: &str, name: &str) -> Widget {
-    let widgets = widgets(app);
+    let mut widgets = widgets(app);
+    // Of several the topmost.
+    widgets.sort_by(|a, b| a.rect.top().total_cmp(&b.rect.top()));
     let found = widgets
         .iter()
         .position(|it| it.role == role && it.name == name);
@@ -230,6 +236,19 @@ fn focused(app: &mut App) -> Option<accesskit::NodeId> {
     Some(update.focus)
 }
 
+/// Goes on with Tab until a widget has the focus.
+#[track_caller]
+fn focus(app: &mut App, role: &str, name: &str) {
+    for _ in 0..100 {
+        press(app, egui::Key::Tab);
+        let wanted = find(app, role, name).id;
+        if focused(app) == Some(wanted) {
+            return;
+        }
+    }
+    panic!("{role} {name:?} does not get the focus");
+}
+
 #[test]
 fn a_key_opens_and_closes_it_and_a_closed_window_leaves_no_trace() {
     let mut app = show();
@@ -284,6 +303,7 @@ fn a_slider_follows_the_pointer_and_the_arrows() {
     let moves = app.world().resource::<CameraMoves>().0;
     step(&mut app, 5);
     assert_eq!(app.world().resource::<CameraMoves>().0, moves);
+    focus(&mut app, "Slider", "contact");
     press(&mut app, egui::Key::ArrowRight);
     let more = only::<ScreenSpaceFluid>(&mut app).contact;
     assert!(more > contact, "{more}");
@@ -308,7 +328,7 @@ fn tab_goes_from_setting_to_setting_and_changes_none() {
     let mut app = opened();
     let camera = only::<ScreenSpaceFluid>(&mut app);
     let material = only::<FluidMaterial>(&mut app);
-    let kernel = only::<bevy_fluid::SurfaceKernel>(&mut app);
+    let kernel = only::<SurfaceKernel>(&mut app);
     let mut visited = Vec::new();
     for _ in 0..60 {
         press(&mut app, egui::Key::Tab);
@@ -333,7 +353,7 @@ fn tab_goes_from_setting_to_setting_and_changes_none() {
     }
     assert_eq!(only::<ScreenSpaceFluid>(&mut app), camera);
     assert_eq!(only::<FluidMaterial>(&mut app), material);
-    assert_eq!(only::<bevy_fluid::SurfaceKernel>(&mut app), kernel);
+    assert_eq!(only::<SurfaceKernel>(&mut app), kernel);
 }
 
 #[test]

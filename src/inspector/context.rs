@@ -1,7 +1,11 @@
 //! Egui for as long as the window is open, where the program has none itself.
 
-use bevy::{camera::RenderTarget, prelude::*};
-use bevy_egui::{EguiContext, EguiPreUpdateSet, PrimaryEguiContext, egui};
+use bevy::{
+    camera::RenderTarget,
+    prelude::*,
+    render::{Extract, RenderApp, sync_world::MainEntity},
+};
+use bevy_egui::{EguiContext, EguiPreUpdateSet, PrimaryEguiContext, egui, render::EguiCameraView};
 
 use super::FluidInspector;
 
@@ -17,6 +21,22 @@ pub(super) fn plugin(app: &mut App) {
         PreUpdate,
         attach_context.before(EguiPreUpdateSet::InitContexts),
     );
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.add_systems(ExtractSchedule, forget_closed_views);
+    }
+}
+
+/// `bevy_egui` never takes back that a camera shows a context, and looks for it in vain.
+fn forget_closed_views(
+    views: Query<(Entity, &MainEntity), With<EguiCameraView>>,
+    contexts: Extract<Query<(), With<EguiContext>>>,
+    mut commands: Commands,
+) {
+    for (view, camera) in &views {
+        if !contexts.contains(camera.id()) {
+            commands.entity(view).remove::<EguiCameraView>();
+        }
+    }
 }
 
 /// Gives the camera that is drawn last a context while the window is open. An idle context would

@@ -12,7 +12,7 @@ use crate::SettingRange;
 pub(super) const LABEL: f32 = 128.0;
 const SLIDER: f32 = 92.0;
 const NUMBER: f32 = 92.0;
-const GAP: f32 = 6.0;
+pub(super) const GAP: f32 = 6.0;
 const RESET: f32 = 20.0;
 const INDENT: f32 = 10.0;
 pub(super) const VALUE: f32 = SLIDER + GAP + NUMBER;

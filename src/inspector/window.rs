@@ -177,8 +177,9 @@ fn choose(
         .or(entities.first())?;
     let mut entity = *entity;
     ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = widgets::GAP;
         let label = ui.strong(kind);
-        ui.add_space(widgets::LABEL - label.rect.width() - ui.spacing().item_spacing.x);
+        ui.add_space(widgets::LABEL - label.rect.width());
         ComboBox::from_id_salt(kind)
             .width(widgets::VALUE)
             .selected_text(name)
@@ -308,13 +309,16 @@ fn component(
         .id_salt((name, entity))
         .default_open(opens(info.type_id()))
         .show_unindented(ui, |ui| {
-            let Some(mut value) = data.reflect_mut(world.entity_mut(entity)) else {
-                return;
-            };
-            let edited = section(ui, value.bypass_change_detection(), types);
-            if edited {
-                value.set_changed();
-            }
+            // Lists of one name are in more than one section.
+            ui.push_id(name, |ui| {
+                let Some(mut value) = data.reflect_mut(world.entity_mut(entity)) else {
+                    return;
+                };
+                let edited = section(ui, value.bypass_change_detection(), types);
+                if edited {
+                    value.set_changed();
+                }
+            });
         });
     widgets::explained(header.header_response, info.docs());
 }

@@ -55,8 +55,8 @@ fn relative_thickness(bulk: vec2<f32>, spray: vec2<f32>, position: vec2<f32>) ->
 #ifdef ACCUMULATED
     let length = textureLoad(amounts, pixel, 0).x;
 #else
-    // Without a back nothing is seen through it.
-    if !has_back(bulk) && !has_back(spray) {
+    // A front without a back: nothing is seen through it.
+    if (has_front(bulk) && !has_back(bulk)) || (has_front(spray) && !has_back(spray)) {
         return 1.0;
     }
     let length = layered_length(bulk, spray, pixel, ndc_from_pixel(position));
