@@ -48,7 +48,11 @@ fn setup(mut scenery: Scenery) {
     scenery.commands.spawn((
         Name::new("pool and drops"),
         FluidParticles::new(pool(0.0), RADIUS),
-        FluidMaterial::WATER,
+        FluidMaterial {
+            // A lake's water, so that depth shows.
+            medium: Medium::absorbing(LinearRgba::rgb(0.25, 0.7, 0.8), 1.0),
+            ..FluidMaterial::WATER
+        },
     ));
     scenery.commands.spawn((
         Name::new("ball"),

@@ -34,6 +34,14 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Looking inside
+//!
+//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'
+//! times and the debug views: F1 opens it. [`FluidDebugView`] chooses a debug view without it.
+//!
+//! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
+//! finds them: see [`diagnostics`] for the paths.
+//!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 

@@ -166,7 +166,6 @@ impl Sources<'_> {
                 &layers.bulk_normals.default_view,
                 &layers.spray.default_view,
                 &layers.spray_normals.default_view,
-                &self.placeholders.nearest,
                 &self.cube(body.cubemaps.diffuse).texture_view,
                 &layers
                     .thickness

@@ -41,6 +41,11 @@ pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
             "interior particles",
             "no ray starts among them",
         ),
+        (
+            !plan.cut,
+            "cutting splats open",
+            "the near plane meets none",
+        ),
         (!plan.bulk, "bulk layers", "no particle is bulk"),
         (!plan.spray, "spray layers", "no particle is spray"),
         (plan.accumulated, "back layers", summed_up),
@@ -231,6 +236,7 @@ mod tests {
             words(smoke),
             [
                 "interior particles",
+                "cutting splats open",
                 "spray layers",
                 "back layers",
                 "smoothing",

@@ -19,7 +19,7 @@ use super::{
     plan::{MediumTerms, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
     smooth::{SmoothPipeline, SmoothSteps},
-    splat::{SplatOutput, SplatPipeline},
+    splat::{SplatKey, SplatOutput, SplatPipeline},
     thickness::ThicknessPipeline,
 };
 use crate::{
@@ -68,14 +68,18 @@ fn assert_variants<P: SpecializedRenderPipeline + Resource>(keys: Vec<P::Key>) {
 
 #[test]
 fn every_splat_output_is_made() {
-    assert_variants::<SplatPipeline>(vec![
+    let outputs = [
         SplatOutput::Layers,
         SplatOutput::Fronts,
         SplatOutput::FrontDepth,
         SplatOutput::BackDepth,
         SplatOutput::Count(TextureFormat::R32Float),
         SplatOutput::Count(TextureFormat::R16Float),
-    ]);
+    ];
+    let keys = outputs
+        .into_iter()
+        .flat_map(|output| [false, true].map(|cut| SplatKey { output, cut }));
+    assert_variants::<SplatPipeline>(keys.collect());
 }
 
 #[test]
