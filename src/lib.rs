@@ -34,16 +34,28 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Looking inside
+//!
+//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'
+//! times and the debug views: F1 opens it. [`FluidDebugView`] chooses a debug view without it.
+//!
+//! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
+//! finds them: see [`diagnostics`] for the paths.
+//!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
 mod complaints;
+pub mod diagnostics;
 mod emitter;
+#[cfg(feature = "inspector")]
+pub mod inspector;
 mod material;
 mod medium;
 mod particles;
 pub mod rain;
 mod random;
+mod range;
 pub mod render;
 mod schedule;
 mod settings;
@@ -51,7 +63,10 @@ pub mod shape;
 
 use bevy::prelude::*;
 
+#[cfg(feature = "inspector")]
+pub use crate::inspector::FluidInspectorPlugin;
 pub use crate::{
+    diagnostics::FluidDiagnosticsPlugin,
     emitter::{
         ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
         ParticleCollider, ParticleEmitter,
@@ -60,6 +75,7 @@ pub use crate::{
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
     rain::{Rain, RainPlugin},
+    range::SettingRange,
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -108,7 +124,12 @@ impl Plugin for FluidPlugin {
                 layer_blending: self.layer_blending,
                 shortcuts: self.shortcuts,
             },
-        ));
+        ))
+        .register_type::<FluidParticles>()
+        .register_type::<FluidMaterial>()
+        .register_type::<SurfaceKernel>()
+        .register_type::<ScreenSpaceFluid>()
+        .register_type::<FluidDebugView>();
     }
 }
 

@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 
 use super::distance::Solid;
+use crate::range::SettingRange;
 
 /// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
 /// follows its entity: the scale of the transform counts, and a collider that moves or turns takes
@@ -32,9 +33,11 @@ pub struct ParticleCollider {
     pub shape: ColliderShape,
     /// Share of the speed, across the surface, that is left after a bounce. Range 0..=1, default 0.2.
     /// Higher: particles bounce; 0: they stay on it.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub restitution: f32,
     /// Force along the surface over force across it, at most (Coulomb's coefficient). Range 0..=1000,
     /// default 0.2. Higher: particles stop sooner and stay on steeper slopes.
+    #[reflect(@SettingRange::new(0.0, 1e3).logarithmic())]
     pub friction: f32,
 }
 
@@ -49,19 +52,23 @@ pub enum ColliderShape {
     /// counts.
     Sphere {
         /// Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         radius: f32,
     },
     /// A box about the origin, along the axes.
     Cuboid {
         /// Half of its sides. Unit: m, range 0..=1e6 each.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         half_size: Vec3,
     },
     /// A cylinder along y with half a ball at each end. Of the scales along x and z the greater
     /// counts for the radius.
     Capsule {
         /// Of the cylinder and the balls. Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         radius: f32,
         /// Half of the cylinder's length, the balls left out. Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         half_length: f32,
     },
 }

@@ -63,7 +63,10 @@ pub struct RainPlugin {
 
 impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RainStreaks>()
+        app.register_type::<Rain>()
+            .register_type::<RainShelter>()
+            .register_type::<RainStreaks>()
+            .init_resource::<RainStreaks>()
             .init_resource::<BakedStreaks>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
             .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))

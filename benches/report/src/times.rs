@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// The passes by the names of their GPU spans, and what the table calls their times.
-const PASSES: [(&str, &str, &str); 6] = [
+const PASSES: [(&str, &str, &str); 7] = [
     (
         "fluid_scene_depth",
         "time_scene_depth",
@@ -21,6 +21,7 @@ const PASSES: [(&str, &str, &str); 6] = [
     ("fluid_splat", "time_splat", "time_splat_p95"),
     ("fluid_smooth", "time_smooth", "time_smooth_p95"),
     ("fluid_normals", "time_normals", "time_normals_p95"),
+    ("fluid_thickness", "time_thickness", "time_thickness_p95"),
     ("fluid_refract", "time_refract", "time_refract_p95"),
     ("fluid_composite", "time_composite", "time_composite_p95"),
 ];
@@ -103,7 +104,7 @@ pub(crate) fn measure(
                 "time_smooth_normals",
                 "time_smooth_normals_p95",
             ),
-            (&[0, 1, 2, 3, 4, 5], "time_gpu", "time_gpu_p95"),
+            (&[0, 1, 2, 3, 4, 5, 6], "time_gpu", "time_gpu_p95"),
         ] {
             if let Some([median, high]) = sum(passes) {
                 table.add(subject, quantity, "all", median, "ms");
