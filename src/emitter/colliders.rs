@@ -251,6 +251,10 @@ impl Collider {
         })
     }
 
+    pub(super) fn moves(&self) -> bool {
+        self.path.is_some()
+    }
+
     /// How far a point of it, in its own space, gets in the step.
     #[inline]
     pub(super) fn way(&self, point: Vec3A) -> Vec3A {

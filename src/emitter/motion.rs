@@ -126,6 +126,9 @@ impl Step<'_> {
         mut flight: Flight,
         mut time: f32,
     ) {
+        if self.rests(*position, *velocity) {
+            return;
+        }
         for _ in 0..CONTACTS {
             let end = flight.position(*position, *velocity);
             let Some(contact) = self.first_contact(*position, end, time, None) else {
@@ -141,6 +144,35 @@ impl Step<'_> {
             flight = self.forces.over(time);
         }
         self.push_out(position, velocity);
+    }
+
+    /// Whether a particle lies still on something that holds it, with nothing near that moves: then
+    /// it stays where it is.
+    fn rests(&self, position: Vec3A, velocity: Vec3A) -> bool {
+        if velocity != Vec3A::ZERO {
+            return false;
+        }
+        let mut is_held = false;
+        for collider in self.colliders.list() {
+            if !collider.is_near(position, position, self.radius) {
+                continue;
+            }
+            if collider.moves() {
+                return false;
+            }
+            let (distance, normal) = collider.solid.distance(collider.to_local(1.0, position));
+            let normal = collider.turn(1.0, normal);
+            let weight = -self.forces.gravity.dot(normal);
+            let pull = self.forces.gravity + normal * weight;
+            let gap = distance - self.radius;
+            if gap < 0.0 {
+                return false;
+            }
+            is_held |= gap <= self.tolerance(position)
+                && weight > 0.0
+                && pull.length_squared() <= (collider.friction * weight).powi(2);
+        }
+        is_held
     }
 
     /// The first collider that a particle meets on its straight way to `end`, which takes the last
@@ -193,6 +225,9 @@ impl Step<'_> {
         velocity: &mut Vec3A,
         time: f32,
     ) -> f32 {
+        if contact.part == 0.0 {
+            return 0.0;
+        }
         let along_chord = contact.part * time;
         let mut needed = along_chord;
         let mut flight = self.forces.over(needed);
@@ -288,6 +323,7 @@ impl Step<'_> {
     /// or what rounding has left.
     fn push_out(&self, position: &mut Vec3A, velocity: &mut Vec3A) {
         for _ in 0..2 {
+            let mut is_pushed = false;
             for collider in self.colliders.list() {
                 if !collider.is_near(*position, *position, self.radius) {
                     continue;
@@ -296,11 +332,15 @@ impl Step<'_> {
                 let (distance, normal) = collider.solid.distance(point);
                 let depth = self.radius - distance;
                 if depth > 0.0 {
+                    is_pushed = true;
                     let own = collider.way(point - distance * normal) / self.seconds;
                     let normal = collider.turn(1.0, normal);
                     *position += depth * normal;
                     *velocity -= normal * normal.dot(*velocity - own).min(0.0);
                 }
+            }
+            if !is_pushed {
+                break;
             }
         }
     }
