@@ -34,6 +34,12 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Where particles come from
+//!
+//! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
+//! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
+//! [`FluidSystems::Simulate`]. They do not push each other.
+//!
 //! # Looking inside
 //!
 //! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'

@@ -149,7 +149,7 @@ impl Pose {
 }
 
 /// A collider in the world during a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Collider {
     pub(super) solid: Solid,
     pub(super) restitution: f32,
@@ -354,8 +354,9 @@ impl Colliders {
             let Some(collider) = Collider::new(collider, transform, &mut path) else {
                 continue;
             };
+            let reach = collider.reach;
             self.list.push(collider);
-            match collider.reach {
+            match reach {
                 Reach::Below(_) => {
                     let last = self.list.len() - 1;
                     self.list.swap(self.half_spaces, last);

@@ -76,8 +76,7 @@ impl Solid {
         for _ in 0..STEPS {
             let (distance, normal) = self.distance(start + part * way);
             let (gap, slope) = (distance - radius, normal.dot(way));
-            // Not so for NaN either.
-            if !(slope < flattest) {
+            if slope >= flattest || slope.is_nan() {
                 return None;
             }
             if gap <= tolerance {
