@@ -91,7 +91,6 @@ fn the_code_of_every_kind_of_camera_compiles() {
             search: Search::Secant,
             fresnel: Fresnel::Schlick,
             contact: 0.0,
-            ..default()
         }
     );
 }
