@@ -2,6 +2,7 @@
 //! tells where its widgets are.
 
 use bevy::{
+    diagnostic::{Diagnostic, DiagnosticsStore},
     input::{
         ButtonState,
         keyboard::{Key, KeyboardInput},
@@ -428,8 +429,8 @@ fn counts_and_times_are_in_bevys_store() {
     let mut app = opened();
     step(&mut app, 5);
     let particles = ball(0.4, 0.05).len() as f64;
-    let store = app.world().resource::<bevy::diagnostic::DiagnosticsStore>();
-    let value = |path| store.get(&path).and_then(|it| it.value());
+    let store = app.world().resource::<DiagnosticsStore>();
+    let value = |path| store.get(&path).and_then(Diagnostic::value);
     assert_eq!(value(diagnostics::PARTICLES), Some(particles));
     let classes = [diagnostics::BULK, diagnostics::INTERIOR, diagnostics::SPRAY];
     let sum: f64 = classes.into_iter().filter_map(value).sum();
@@ -438,7 +439,7 @@ fn counts_and_times_are_in_bevys_store() {
     assert_eq!(value(diagnostics::SHAPE_TOTAL), Some(0.0), "nothing moves");
     for pass in diagnostics::PASSES {
         for path in [diagnostics::gpu_time(pass), diagnostics::cpu_time(pass)] {
-            let time = store.get(&path).and_then(|it| it.value());
+            let time = store.get(&path).and_then(Diagnostic::value);
             assert!(time.is_some_and(|time| time >= 0.0), "{path}: {time:?}");
         }
     }

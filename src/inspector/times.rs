@@ -24,7 +24,7 @@ pub(super) enum Clock {
 }
 
 /// A pass that has not run for so long has stopped.
-const STALE: Duration = Duration::from_secs(1);
+const STALE: Duration = Duration::from_secs(3);
 
 /// One colour for each pass, and the last for shaping.
 const COLORS: [Color32; PASSES.len() + 1] = [

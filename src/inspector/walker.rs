@@ -3,7 +3,7 @@
 use bevy::{
     prelude::*,
     reflect::{
-        NamedField, PartialReflect, ReflectMut, ReflectRef, TypeInfo, TypeRegistry,
+        NamedField, PartialReflect, ReflectMut, ReflectRef, TypeInfo, TypeRegistry, UnnamedField,
         enums::{DynamicEnum, DynamicVariant, Enum, VariantInfo},
         prelude::ReflectDefault,
         structs::{DynamicStruct, Struct},
@@ -97,7 +97,7 @@ impl Walker<'_> {
             let info = info.and_then(|info| info.field_at(index));
             let field = Field {
                 name: if index == 0 { "value" } else { "and" },
-                docs: info.and_then(|it| it.docs()),
+                docs: info.and_then(UnnamedField::docs),
                 range: info.and_then(SettingRange::of_unnamed),
                 depth,
             };

@@ -4,7 +4,7 @@ use bevy::{
     diagnostic::DiagnosticsStore,
     ecs::{reflect::ReflectComponent, reflect::ReflectResource},
     prelude::*,
-    reflect::{TypeRegistration, TypeRegistry},
+    reflect::{PartialReflect, TypeRegistration, TypeRegistry},
 };
 use bevy_egui::{
     EguiContext, PrimaryEguiContext,
@@ -252,7 +252,7 @@ fn docs_of(view: FluidDebugView) -> Option<&'static str> {
 }
 
 /// Particles by class, of the fluid and of all.
-fn counts(ui: &mut Ui, world: &mut World, fluid: Entity, subjects: &Subjects) {
+fn counts(ui: &mut Ui, world: &World, fluid: Entity, subjects: &Subjects) {
     let of = |entity: Entity| {
         world.get::<ShapedFluid>(entity).map_or([0; 5], |shaped| {
             let classes = [
@@ -332,7 +332,7 @@ fn opens(id: TypeId) -> bool {
 fn section(ui: &mut Ui, value: &mut dyn Reflect, types: &TypeRegistry) -> bool {
     let walker = Walker { registry: types };
     let default = walker.default_of(value.reflect_type_info().type_id());
-    let default = default.as_deref().map(|it| it.as_partial_reflect());
+    let default = default.as_deref().map(PartialReflect::as_partial_reflect);
     let value = value.as_partial_reflect_mut();
     let mut edited = false;
     ui.horizontal(|ui| {

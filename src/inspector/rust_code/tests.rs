@@ -31,8 +31,14 @@ macro_rules! assert_code {
 #[test]
 fn only_what_differs_is_listed() {
     let camera = ScreenSpaceFluid {
+        smoothing: Smoothing::PlaneFit(PlaneFit {
+            iterations: 2,
+            window: Window::Radii(1.0),
+            ..PlaneFit::DEFAULT
+        }),
         refractions: Refractions::One,
-        ..ScreenSpaceFluid::ACCURATE
+        search: Search::Bracketed { coarse_samples: 8 },
+        ..ScreenSpaceFluid::DEFAULT
     };
     let code = "\
 ScreenSpaceFluid {
@@ -63,6 +69,7 @@ fn the_code_of_every_kind_of_camera_compiles() {
         ScreenSpaceFluid {
             smoothing: Smoothing::PlaneFit(PlaneFit {
                 form: PlaneFitForm::TotalLeastSquares,
+                half_taps: 4,
                 iterations: 3,
                 window: Window::Pixels,
                 ..default()
@@ -84,7 +91,6 @@ fn the_code_of_every_kind_of_camera_compiles() {
             search: Search::Secant,
             fresnel: Fresnel::Schlick,
             contact: 0.0,
-            ..default()
         }
     );
 }
