@@ -34,13 +34,34 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Where particles come from
+//!
+//! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
+//! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
+//! [`FluidSystems::Simulate`]. They do not push each other.
+//!
+//! # Looking inside
+//!
+//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'
+//! times and the debug views: F1 opens it. [`FluidDebugView`] chooses a debug view without it.
+//!
+//! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
+//! finds them: see [`diagnostics`] for the paths.
+//!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
+mod complaints;
+pub mod diagnostics;
+mod emitter;
+#[cfg(feature = "inspector")]
+pub mod inspector;
 mod material;
 mod medium;
 mod particles;
 pub mod rain;
+mod random;
+mod range;
 pub mod render;
 mod schedule;
 mod settings;
@@ -48,11 +69,19 @@ pub mod shape;
 
 use bevy::prelude::*;
 
+#[cfg(feature = "inspector")]
+pub use crate::inspector::FluidInspectorPlugin;
 pub use crate::{
+    diagnostics::FluidDiagnosticsPlugin,
+    emitter::{
+        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
+        ParticleCollider, ParticleEmitter,
+    },
     material::{FluidMaterial, MaterialError, Thickness},
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
     rain::{Rain, RainPlugin},
+    range::SettingRange,
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -65,8 +94,8 @@ pub use crate::{
 /// What most programs need.
 pub mod prelude {
     pub use crate::{
-        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, Rain, RainPlugin,
-        ScreenSpaceFluid, SurfaceKernel, Thickness,
+        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
+        ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,
     };
 }
 
@@ -95,12 +124,18 @@ impl Plugin for FluidPlugin {
         app.add_plugins((
             schedule::plugin,
             particles::plugin,
+            emitter::plugin,
             material::plugin,
             render::FluidRenderPlugin {
                 layer_blending: self.layer_blending,
                 shortcuts: self.shortcuts,
             },
-        ));
+        ))
+        .register_type::<FluidParticles>()
+        .register_type::<FluidMaterial>()
+        .register_type::<SurfaceKernel>()
+        .register_type::<ScreenSpaceFluid>()
+        .register_type::<FluidDebugView>();
     }
 }
 

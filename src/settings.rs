@@ -2,6 +2,8 @@
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
+use crate::range::SettingRange;
+
 /// Makes a camera draw particle fluids.
 ///
 /// The presets are points on the measured front of speed against error (bench `speed_error`): the
@@ -26,6 +28,7 @@ pub struct ScreenSpaceFluid {
     /// straight on to it and no layer of air is seen between. Unit: particle radii, range 0..=8,
     /// default 1: what simulations leave between particles and walls. Higher: thin gaps of air
     /// vanish. 0: liquid and solids never touch.
+    #[reflect(@SettingRange::new(0.0, 8.0).unit("radii"))]
     pub contact: f32,
 }
 
@@ -120,6 +123,7 @@ pub enum Search {
     Bracketed {
         /// Evenly spaced samples taken first, to find the first of several crossings.
         /// Range 0..=32, default 0. More: fewer wrong crossings at steps in depth.
+        #[reflect(@SettingRange::new(0.0, 32.0).unit("samples").start(0.0))]
         coarse_samples: u32,
     },
 }
@@ -176,7 +180,7 @@ impl Default for Smoothing {
 pub enum Window {
     /// So many particle radii as they appear on screen, whatever the distance: taps spread out
     /// for near particles and fall away for far ones. Range 0.05..=4.
-    Radii(f32),
+    Radii(#[reflect(@SettingRange::new(0.05, 4.0).unit("radii").logarithmic())] f32),
     /// As many pixels as there are taps, as the papers have it.
     Pixels,
 }
@@ -189,16 +193,20 @@ pub struct PlaneFit {
     pub form: PlaneFitForm,
     /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 5.
     /// More: smoother between taps, at a linear (separable) or quadratic price.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often the fit is repeated. Range 1..=8, default 1. More: smoother.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 1.7 radii. Larger: smoother, less detail.
     pub window: Window,
     /// Depth difference at which a tap counts exp(-1). Unit: particle radii, range 0.5..=4,
     /// default 2. Higher: smoother, but steps in depth begin to leak into each other.
+    #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
     /// How far the fit may move a pixel before the old depth is kept. Unit: particle radii,
     /// range 0.1.., default 2.
+    #[reflect(@SettingRange::new(0.1, 8.0).unit("radii").open())]
     pub bound: f32,
 }
 
@@ -248,12 +256,15 @@ pub enum PlaneFitForm {
 #[reflect(Default, Clone, PartialEq)]
 pub struct Bilateral {
     /// Taps to each side of the centre. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often the filter is repeated. Range 1..=64, default 22.
+    #[reflect(@SettingRange::new(1.0, 64.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 0.5 radii.
     pub window: Window,
     /// σ₂ in particle radii. Range 0.5..=4, default 2√2.
+    #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -284,6 +295,7 @@ impl Default for Bilateral {
 #[reflect(Default, Clone, PartialEq)]
 pub struct NormalAverage {
     /// Taps to each side of the centre. Range 1..=8, default 4.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How large the window is. Default 0.65 radii.
     pub window: Window,
@@ -303,13 +315,16 @@ impl Default for NormalAverage {
 #[reflect(Default, Clone, PartialEq)]
 pub struct NarrowRange {
     /// Taps to each side of the centre. Range 1..=8, default 6.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often rows and columns are filtered. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 1.5 radii.
     pub window: Window,
     /// δ, the depth difference that belongs to the surface. Unit: particle radii, range 1..=20,
     /// default 10 as published.
+    #[reflect(@SettingRange::new(1.0, 20.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -329,11 +344,14 @@ impl Default for NarrowRange {
 #[reflect(Default, Clone, PartialEq)]
 pub struct CurvatureFlow {
     /// Number of steps. Range 1..=200, default 60.
+    #[reflect(@SettingRange::new(1.0, 200.0).unit("steps"))]
     pub iterations: u32,
     /// Time step. Unit: pixels squared, range 0.01..=0.5, default 0.4. Larger: smoother; explicit
     /// steps ring beyond 0.5.
+    #[reflect(@SettingRange::new(0.01, 0.5).unit("px²"))]
     pub step: f32,
     /// Depth differences beyond this are edges. Unit: particle radii, range 0.5..=8, default 3.
+    #[reflect(@SettingRange::new(0.5, 8.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -369,4 +387,30 @@ pub enum FluidDebugView {
     Status,
     /// Bulk blue, spray orange.
     Classes,
+    /// The straight way through the liquid at each pixel: black 0, white as far as the body's box
+    /// is deep, and where nothing is seen through it.
+    Thickness,
+    /// Where each ray goes in the end: its direction in view space, −1..=1 shown as 0..=1, half as
+    /// bright where it ends at an opaque surface or goes straight on.
+    ExitRay,
+    /// How many splats are drawn at each pixel: violet 1, red 4, orange 16, white 64 and more.
+    /// It takes a pass of its own.
+    Overdraw,
+}
+
+impl FluidDebugView {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::BulkFront,
+        Self::BulkBack,
+        Self::SprayFront,
+        Self::SprayBack,
+        Self::Normals,
+        Self::Interfaces,
+        Self::Status,
+        Self::Classes,
+        Self::Thickness,
+        Self::ExitRay,
+        Self::Overdraw,
+    ];
 }

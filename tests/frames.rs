@@ -162,16 +162,7 @@ fn only_changed_particles_are_shaped_and_uploaded() {
 fn every_debug_view_is_drawn() {
     let mut app = show_pool();
     let plain = picture(&mut app);
-    for view in [
-        FluidDebugView::BulkFront,
-        FluidDebugView::BulkBack,
-        FluidDebugView::SprayFront,
-        FluidDebugView::SprayBack,
-        FluidDebugView::Normals,
-        FluidDebugView::Interfaces,
-        FluidDebugView::Status,
-        FluidDebugView::Classes,
-    ] {
+    for view in FluidDebugView::ALL {
         for msaa in [Msaa::Off, Msaa::Sample4] {
             look(&mut app, (view, msaa));
             assert!(picture(&mut app) != plain, "{view:?}, {msaa:?}");

@@ -237,7 +237,7 @@ pub fn mean_speed(law: DragLaw) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rain::random::Random;
+    use crate::random::Random;
 
     /// Gunn and Kinzer as METHOD 7 cites them.
     const CITED: [(f64, f64); 10] = [

@@ -38,7 +38,6 @@ pub mod densities;
 mod draw;
 pub mod drops;
 pub mod phase;
-mod random;
 mod settings;
 pub mod streaks;
 
@@ -65,7 +64,10 @@ pub struct RainPlugin {
 
 impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RainStreaks>()
+        app.register_type::<Rain>()
+            .register_type::<RainShelter>()
+            .register_type::<RainStreaks>()
+            .init_resource::<RainStreaks>()
             .init_resource::<BakedStreaks>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
             .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))

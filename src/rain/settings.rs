@@ -7,6 +7,7 @@ use super::{
     drops::DragLaw,
     streaks::{LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
 };
+use crate::range::SettingRange;
 
 /// Makes a camera see rain. Values that make no sense are clamped and said once.
 ///
@@ -17,19 +18,24 @@ use super::{
 pub struct Rain {
     /// How much it rains. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame;
     /// at 0 nothing is done.
+    #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic())]
     pub rate: f32,
     /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
     /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
     /// grows with its logarithm beyond 2 m.
+    #[reflect(@SettingRange::new(1.0, 100.0).unit("m").logarithmic())]
     pub distance: f32,
     /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
     /// here. Unit: m, range 0..=100,000, default 500.
+    #[reflect(@SettingRange::new(0.0, 1e5).unit("m").logarithmic())]
     pub extent: f32,
     /// Velocity of the air along x and z: drops drift with it. Unit: m/s, range −30..=30 each,
     /// default 0.
+    #[reflect(@SettingRange::new(-30.0, 30.0).unit("m/s"))]
     pub wind: Vec2,
     /// How bright drops are. Range 0..=100, default 1, which is what water scatters. Higher:
     /// streaks that show on a display of small range.
+    #[reflect(@SettingRange::new(0.0, 100.0).logarithmic())]
     pub brightness: f32,
     /// How rain is drawn. Default [`RainMethod::Streaks`].
     pub method: RainMethod,
@@ -124,7 +130,9 @@ pub enum Exposure {
     #[default]
     FrameTime,
     /// Unit: s, range 1/10,000..=1/10.
-    Seconds(f32),
+    Seconds(
+        #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().start(1.0 / 60.0))] f32,
+    ),
 }
 
 /// Before frames have taken any time. Unit: s.
@@ -161,6 +169,7 @@ impl Exposure {
 #[require(Transform)]
 pub struct RainShelter {
     /// Half of the box's sides in the entity's space. Default 1 each.
+    #[reflect(@SettingRange::new(0.0, 100.0).unit("m").open())]
     pub half_size: Vec3,
 }
 

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 use super::{
     densities::{BAKED_RATES, DENSITIES},
     drops::{DragLaw, LARGEST, SMALLEST, count, sample_diameter, slope},
-    random::Random,
 };
+use crate::random::Random;
 
 /// Layers of the array texture. Each has its own drops, so that repetition does not show.
 pub const VARIANTS: usize = 8;

@@ -16,12 +16,14 @@ use super::{
     support::FluidSupport,
     thickness::ThicknessPipeline,
 };
-use crate::settings::{ScreenSpaceFluid, Smoothing};
+use crate::settings::{FluidDebugView, ScreenSpaceFluid, Smoothing};
 
 /// The pipelines of a body's passes.
 pub(crate) struct BodyPipelines {
     pub(crate) splat: SplatPipelines,
     pub(crate) thickness: Option<CachedRenderPipelineId>,
+    /// For the debug view that shows it.
+    pub(crate) overdraw: Option<CachedRenderPipelineId>,
     pub(crate) smooth: Vec<CachedRenderPipelineId>,
     pub(crate) bulk_normals: BulkNormals,
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
@@ -43,6 +45,7 @@ impl BodyPipelines {
         splat
             .iter()
             .chain(&self.thickness)
+            .chain(&self.overdraw)
             .chain(&self.smooth)
             .chain(self.bulk_normals.pipelines())
             .chain(&self.spray_normals)
@@ -133,9 +136,13 @@ impl Pipelines<'_> {
             self.thicknesses
                 .specialize(&self.cache, &self.thickness, format)
         });
+        let counted = composite.debug_view == Some(FluidDebugView::Overdraw);
+        let overdraw =
+            counted.then(|| self.splat(SplatOutput::Count(support.thickness_format), plan.cut));
         BodyPipelines {
             splat,
             thickness,
+            overdraw,
             smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
             bulk_normals,
             spray_normals: (plan.spray && !plan.index_one)

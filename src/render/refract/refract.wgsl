@@ -2,8 +2,8 @@
 
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
-    depth_map, device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
-    nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_depth, view_from_device, view_ray,
+    depth_map, device_from_view, encode_normal, farthest_scene_depth, ndc_from_pixel,
+    pixel_from_ndc, view_depth, view_from_device, view_ray,
 }
 #import bevy_fluid::render::medium::{reflected, transmitted}
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
@@ -12,6 +12,7 @@
     BACK, BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen,
 }
 #import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
+#import bevy_fluid::render::straight::layered_length
 #import bevy_fluid::render::types::{
     INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
@@ -116,15 +117,7 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     return true;
 }
 
-// (front, back) of one class at a pixel in device depth, cut short by opaque things.
-fn straight_span(layers: vec2<f32>, pixel: vec2<i32>) -> vec2<f32> {
-    if !has_front(layers) || !has_back(layers) {
-        return vec2(0.0);
-    }
-    return vec2(layers.x, min(max(-layers.y, nearest_scene_depth(pixel)), layers.x));
-}
-
-// The straight way through the liquid at a pixel; where bulk and spray overlap it counts once.
+// The straight way through the liquid at a pixel.
 fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
 #ifdef ACCUMULATED
     return accumulated_length(pixel);
@@ -132,22 +125,8 @@ fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
     // Farther than light comes.
     return 1e30;
 #else
-    let bulk = straight_span(load_layers(BULK, pixel), pixel);
-    let spray = straight_span(load_layers(SPRAY, pixel), pixel);
-    let both = vec2(min(bulk.x, spray.x), max(bulk.y, spray.y));
-    var length = span_length(bulk, ndc) + span_length(spray, ndc);
-    if both.x > both.y {
-        length -= span_length(both, ndc);
-    }
-    return length;
+    return layered_length(load_layers(BULK, pixel), load_layers(SPRAY, pixel), pixel, ndc);
 #endif
-}
-
-fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
-    if span.x <= 0.0 {
-        return 0.0;
-    }
-    return distance(view_from_device(ndc, span.y), view_from_device(ndc, span.x));
 }
 
 // Whether a point is in the liquid of a class. Of the spray only its hindmost droplet counts: there

@@ -1,5 +1,7 @@
 //! Ellipsoids into depth layers: one draw per class, both depths from one quadratic.
 
+mod overdraw;
+
 use bevy::{
     asset::load_embedded_asset,
     camera::{MainPassResolutionOverride, Viewport},
@@ -14,7 +16,7 @@ use bevy::{
             CompareFunction, DepthStencilState, LoadOp, Operations, PipelineCache, PrimitiveState,
             PrimitiveTopology, RenderPassDepthStencilAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp,
-            VertexState,
+            TextureFormat, VertexState,
             binding_types::{storage_buffer_read_only_sized, texture_depth_2d, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
@@ -24,13 +26,14 @@ use bevy::{
 };
 
 use super::{
-    bindings::{MAX_BLEND, NO_LAYERS, cleared, common_layout, defs, fragment},
+    bindings::{MAX_BLEND, NO_LAYERS, SUM_BLEND, cleared, common_layout, defs, fragment},
     bodies::{Body, ViewBodies},
     extract::GpuSplats,
     gpu_types::GpuFluid,
     layers::DEPTH_FORMAT,
     support::LAYER_FORMAT,
 };
+pub(crate) use overdraw::overdraw;
 
 /// What a draw of splats keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +46,8 @@ pub(crate) enum SplatOutput {
     FrontDepth,
     /// The farthest back, by the depth test.
     BackDepth,
+    /// How many there are, summed up in a texture of this format.
+    Count(TextureFormat),
 }
 
 /// A draw of splats.
@@ -127,14 +132,16 @@ impl SpecializedRenderPipeline for SplatPipeline {
             ),
             ("DEPTH_FRONT", output == SplatOutput::FrontDepth),
             ("DEPTH_BACK", output == SplatOutput::BackDepth),
+            ("COUNT", matches!(output, SplatOutput::Count(_))),
             ("NONE_CUT", !cut),
         ]);
-        let (formats, compare): (&[_], _) = match output {
-            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], None),
-            SplatOutput::FrontDepth => (&[], Some(CompareFunction::Greater)),
-            SplatOutput::BackDepth => (&[], Some(CompareFunction::Less)),
+        let (formats, blend, compare): (&[_], _, _) = match output {
+            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], MAX_BLEND, None),
+            SplatOutput::FrontDepth => (&[], MAX_BLEND, Some(CompareFunction::Greater)),
+            SplatOutput::BackDepth => (&[], MAX_BLEND, Some(CompareFunction::Less)),
+            SplatOutput::Count(format) => (&[format], SUM_BLEND, None),
         };
-        let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(MAX_BLEND));
+        let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(blend));
         if output == SplatOutput::Fronts {
             for target in fragment.targets.iter_mut().flatten() {
                 target.write_mask = ColorWrites::RED;

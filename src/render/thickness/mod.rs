@@ -8,9 +8,8 @@ use bevy::{
         camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupLayoutDescriptor, BlendComponent, BlendFactor, BlendOperation, BlendState,
-            PipelineCache, RenderPassDescriptor, RenderPipelineDescriptor,
-            SpecializedRenderPipeline, TextureFormat, VertexState,
+            BindGroupLayoutDescriptor, PipelineCache, RenderPassDescriptor,
+            RenderPipelineDescriptor, SpecializedRenderPipeline, TextureFormat, VertexState,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -18,23 +17,10 @@ use bevy::{
 };
 
 use super::{
-    bindings::{cleared, common_layout, defs, fragment},
+    bindings::{SUM_BLEND, cleared, common_layout, defs, fragment},
     bodies::ViewBodies,
     extract::GpuSplats,
     splat::{Class, SPLAT_QUAD, SplatPipeline, draw_splats},
-};
-
-/// The sum of what is there and what is drawn.
-const SUM: BlendState = {
-    let sum = BlendComponent {
-        src_factor: BlendFactor::One,
-        dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
-    };
-    BlendState {
-        color: sum,
-        alpha: sum,
-    }
 };
 
 #[derive(Resource)]
@@ -72,7 +58,12 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
                 buffers: vec![],
             },
             primitive: SPLAT_QUAD,
-            fragment: Some(fragment(&self.shader, shader_defs, &[format], Some(SUM))),
+            fragment: Some(fragment(
+                &self.shader,
+                shader_defs,
+                &[format],
+                Some(SUM_BLEND),
+            )),
             ..default()
         }
     }
