@@ -41,6 +41,8 @@ mod material;
 mod medium;
 mod particles;
 pub mod rain;
+#[cfg(feature = "recordings")]
+pub mod recording;
 pub mod render;
 mod schedule;
 mod settings;
@@ -101,6 +103,8 @@ impl Plugin for FluidPlugin {
                 shortcuts: self.shortcuts,
             },
         ));
+        #[cfg(feature = "recordings")]
+        app.add_plugins(recording::RecordingPlugin);
     }
 }
 
