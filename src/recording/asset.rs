@@ -127,12 +127,20 @@ impl FluidRecording {
             if is_good {
                 Ok(())
             } else {
-                Err(RecordingError::Value { pattern, field, value })
+                Err(RecordingError::Value {
+                    pattern,
+                    field,
+                    value,
+                })
             }
         };
         let (rate, radius) = (settings.rate, settings.radius);
         positive("rate", rate, rate > 0.0 && rate.is_finite())?;
-        positive("radius", radius.unwrap_or(0.0).into(), radius.is_none_or(is_radius))?;
+        positive(
+            "radius",
+            radius.unwrap_or(0.0).into(),
+            radius.is_none_or(is_radius),
+        )?;
         let folder = folder(pattern.folder(), beside);
         let frames = numbered(server, settings, &pattern, &folder).await?;
         let frame = |(number, name): (u32, String)| RecordedFrame {
@@ -169,7 +177,10 @@ async fn numbered(
     pattern: &FramePattern,
     folder: &AssetPath<'_>,
 ) -> Result<Vec<(u32, String)>, RecordingError> {
-    let (first, last) = (settings.first.unwrap_or(0), settings.last.unwrap_or(u32::MAX));
+    let (first, last) = (
+        settings.first.unwrap_or(0),
+        settings.last.unwrap_or(u32::MAX),
+    );
     if !pattern.is_numbered() {
         return Ok(vec![(0, pattern.file_name(0))]);
     }

@@ -162,7 +162,10 @@ impl LoadedFrames {
                 .retain(|slot| slot.is_ready() || window.contains(&slot.frame));
         }
         while self.slots.len() > cache {
-            let other = self.slots.iter().position(|slot| !window.contains(&slot.frame));
+            let other = self
+                .slots
+                .iter()
+                .position(|slot| !window.contains(&slot.frame));
             self.slots.swap_remove(other.unwrap_or(0));
         }
         for &frame in window {
@@ -172,8 +175,7 @@ impl LoadedFrames {
             if self.slots.len() == cache {
                 // One that is still loading is shown late rather than never: else play that is
                 // faster than its files would show none at all.
-                let passed =
-                    |slot: &Slot| slot.is_ready() && !window.contains(&slot.frame);
+                let passed = |slot: &Slot| slot.is_ready() && !window.contains(&slot.frame);
                 let Some(passed) = self.slots.iter().position(passed) else {
                     break;
                 };

@@ -30,7 +30,9 @@ pub enum RecordingError {
         value: f64,
     },
     /// The folder cannot be listed.
-    #[error("cannot list {folder} for `{pattern}`: {reason} (`first` and `last` spare the listing)")]
+    #[error(
+        "cannot list {folder} for `{pattern}`: {reason} (`first` and `last` spare the listing)"
+    )]
     Folder {
         /// The folder.
         folder: String,

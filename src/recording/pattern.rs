@@ -32,14 +32,21 @@ impl FramePattern {
                 reason,
             })
         };
-        let (folder, name) = pattern.split_at(pattern.rfind(std::path::is_separator).map_or(0, |at| at + 1));
+        let (folder, name) = pattern.split_at(
+            pattern
+                .rfind(std::path::is_separator)
+                .map_or(0, |at| at + 1),
+        );
         let is_sign = |text: &str| text.contains('#') || text.contains("{}");
         if is_sign(folder) {
             return refuse("the number must stand in the file's name, not the folder's");
         }
         ParticleFormat::of(name)?;
         let (before, digits, after) = if let Some(start) = name.find('#') {
-            let length = name[start..].bytes().take_while(|&byte| byte == b'#').count();
+            let length = name[start..]
+                .bytes()
+                .take_while(|&byte| byte == b'#')
+                .count();
             (&name[..start], Some(length), &name[start + length..])
         } else if let Some((before, after)) = name.split_once("{}") {
             (before, Some(1), after)
@@ -95,7 +102,11 @@ impl FramePattern {
 impl fmt::Display for FramePattern {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         let signs = "#".repeat(self.digits.unwrap_or(0));
-        write!(formatter, "{}{}{signs}{}", self.folder, self.before, self.after)
+        write!(
+            formatter,
+            "{}{}{signs}{}",
+            self.folder, self.before, self.after
+        )
     }
 }
 
@@ -121,14 +132,29 @@ mod tests {
         assert_eq!(pattern.stem(), "dam");
         assert_eq!(pattern.to_string(), "a/dam_##.vtk");
         assert_eq!(pattern.number("dam_9.vtk"), Some(9), "any number of digits");
-        for other in ["dam_.vtk", "dam_x.vtk", "dam_+1.vtk", "dam_1.vtk.bak", "xdam_1.vtk", "dam_99999999999.vtk"] {
+        for other in [
+            "dam_.vtk",
+            "dam_x.vtk",
+            "dam_+1.vtk",
+            "dam_1.vtk.bak",
+            "xdam_1.vtk",
+            "dam_99999999999.vtk",
+        ] {
             assert_eq!(pattern.number(other), None, "{other}");
         }
     }
 
     #[test]
     fn what_is_no_pattern_is_named() {
-        for bad in ["a#/b.vtk", "a#b#.vtk", "a_{}_{}.vtk", "a#_{}.vtk", "a_###.txt", "a_###", ""] {
+        for bad in [
+            "a#/b.vtk",
+            "a#b#.vtk",
+            "a_{}_{}.vtk",
+            "a#_{}.vtk",
+            "a_###.txt",
+            "a_###",
+            "",
+        ] {
             let error = FramePattern::parse(bad).unwrap_err().to_string();
             assert!(error.contains(bad), "{error}");
         }

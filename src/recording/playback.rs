@@ -39,7 +39,13 @@ pub(super) fn play(
         let rate = player.clamped_rate();
         let head = Playhead::at(now, recording, &frames.playable, rate >= 0.0, player.repeat);
         if let Some(moment) = choose(frames, &head, player.interpolation) {
-            show(moment, frames, recording, player.interpolation, &mut particles);
+            show(
+                moment,
+                frames,
+                recording,
+                player.interpolation,
+                &mut particles,
+            );
         }
         let radius = frames.shown_radius.or(player.radius).or(recording.radius);
         if let Some(radius) = radius.filter(|&radius| radius != particles.radius)
@@ -63,7 +69,11 @@ fn moved(
     frames.is_seeking |= is_sought;
     // What is sought is shown before it moves on, and so is the start.
     let stands = is_sought || player.paused || frames.shown.is_none();
-    let seconds = if stands { 0.0 } else { delta * player.clamped_rate() };
+    let seconds = if stands {
+        0.0
+    } else {
+        delta * player.clamped_rate()
+    };
     let now = moved_on(time, seconds, recording, player.repeat);
     frames.left_at = Some(now);
     now
@@ -88,7 +98,9 @@ fn choose(
         if let (Some(from), Some(to)) = ends
             && head.share > 0.0
             && !(from.ids.is_empty() && to.ids.is_empty())
-            && [from, to].into_iter().all(|end| end.ids.len() == end.positions.len())
+            && [from, to]
+                .into_iter()
+                .all(|end| end.ids.len() == end.positions.len())
         {
             frames.is_seeking = false;
             return Some(Shown {
@@ -115,7 +127,9 @@ fn choose(
         head.lag(place, target, count)
     };
     let shown = lag(frames.shown?.before)?;
-    let late = frames.all_ready().filter_map(|frame| Some((lag(frame)?, frame)));
+    let late = frames
+        .all_ready()
+        .filter_map(|frame| Some((lag(frame)?, frame)));
     let (least, frame) = late.min()?;
     (least < shown).then(|| one(frame))
 }

@@ -153,7 +153,11 @@ impl RecordingPlayer {
 
     /// The time, or the recording's start where it is none.
     pub(super) fn clamped_time(&self) -> f64 {
-        if self.time.is_finite() { self.time } else { 0.0 }
+        if self.time.is_finite() {
+            self.time
+        } else {
+            0.0
+        }
     }
 
     pub(super) fn clamped_cache(&self) -> usize {

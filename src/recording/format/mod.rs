@@ -83,7 +83,10 @@ impl ParticleFormat {
 /// Ids from numbers of any type: all of them, or none where one is no whole number of 32 bits.
 fn ids(numbers: impl Iterator<Item = f64>) -> Vec<u32> {
     let whole = |number: f64| (number as u32 as f64 == number).then_some(number as u32);
-    numbers.map(whole).collect::<Option<_>>().unwrap_or_default()
+    numbers
+        .map(whole)
+        .collect::<Option<_>>()
+        .unwrap_or_default()
 }
 
 /// The mean of the radii that are some.

@@ -145,7 +145,13 @@ pub(super) fn write(frame: &ParticleFrame, bytes: &mut Vec<u8>) -> Result<(), St
     bytes.extend((header + "end_header\n").into_bytes());
     for (index, position) in frame.positions.iter().enumerate() {
         bytes.extend(position.to_array().into_iter().flat_map(f32::to_le_bytes));
-        bytes.extend(frame.ids.get(index).into_iter().flat_map(|id| id.to_le_bytes()));
+        bytes.extend(
+            frame
+                .ids
+                .get(index)
+                .into_iter()
+                .flat_map(|id| id.to_le_bytes()),
+        );
         let velocity = frame.velocities.get(index).map(Vec3::to_array);
         bytes.extend(velocity.into_iter().flatten().flat_map(f32::to_le_bytes));
         bytes.extend(frame.radius.into_iter().flat_map(f32::to_le_bytes));

@@ -57,9 +57,7 @@ fn vectors(buffer: &IOBuffer) -> Option<Vec<Vec3>> {
 fn find<'a>(data: &'a Attributes, names: &[&str], components: usize) -> Option<&'a IOBuffer> {
     let fits = |name: &str, count| count == components && names.contains(&name);
     data.point.iter().find_map(|attribute| match attribute {
-        Attribute::DataArray(array) => {
-            fits(&array.name, array.num_comp()).then_some(&array.data)
-        }
+        Attribute::DataArray(array) => fits(&array.name, array.num_comp()).then_some(&array.data),
         Attribute::Field { data_array, .. } => data_array
             .iter()
             .find(|array| fits(&array.name, array.num_comp()))
