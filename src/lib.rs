@@ -34,6 +34,11 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Where particles come from
+//!
+//! Whoever writes [`FluidParticles`] moves the fluid. With the feature `recordings`, `recording` plays
+//! numbered particle files into them, loaded in the background, and writes such files.
+//!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 

@@ -57,8 +57,15 @@ fn app(folder: &Path) -> App {
         },
         RecordingPlugin,
     ));
-    set_time_step(&mut app, 0.0);
+    stop_clock(&mut app);
     app
+}
+
+/// Until [`set_time_step`], of any length.
+fn stop_clock(app: &mut App) {
+    let mut clock = app.world_mut().resource_mut::<Time<Virtual>>();
+    clock.set_max_delta(Duration::from_secs(1000));
+    set_time_step(app, 0.0);
 }
 
 fn set_time_step(app: &mut App, seconds: f64) {

@@ -7,7 +7,7 @@ use super::asset::FluidRecording;
 pub(super) struct Playhead {
     /// The frame at or before the moment, or the first.
     pub(super) before: usize,
-    /// The one after it, or the last.
+    /// The one after the moment; the same where the moment is that of a frame, or the end.
     pub(super) after: usize,
     /// How far from the one to the other, from 0 to 1.
     pub(super) share: f32,
@@ -31,14 +31,15 @@ impl Playhead {
         let before = after.saturating_sub(1);
         let after = after.min(playable.len() - 1);
         let [from, to] = [before, after].map(|place| number(playable[place]));
-        let share = if to > from {
+        let share = if sought > from && to > from {
             ((sought - from) / (to - from)) as f32
         } else {
             0.0
         };
         Self {
             before,
-            after,
+            // At a frame, nothing is asked of the next.
+            after: if share > 0.0 { after } else { before },
             share,
             is_forward,
             repeats,

@@ -10,7 +10,8 @@ use bevy_fluid::recording::{Interpolation, RecordingPlayer, RecordingPlugin, Rec
 
 use super::gates::{GatedReader, Gates};
 use super::{
-    app, folder, frames, log, open, play, player, seek, set_time_step, slowly, wait, write_dots, x,
+    app, folder, frames, log, open, play, player, seek, set_time_step, slowly, stop_clock, wait,
+    write_dots, x,
 };
 
 /// Files that open when they are told to: one dot each, whose x is its number.
@@ -31,7 +32,7 @@ fn gated(count: u32) -> (App, Gates) {
         AssetSourceBuilder::new(move || Box::new(reader.clone())),
     )
     .add_plugins((MinimalPlugins, AssetPlugin::default(), RecordingPlugin));
-    set_time_step(&mut app, 0.0);
+    stop_clock(&mut app);
     (app, gates)
 }
 
@@ -204,6 +205,7 @@ fn a_player_may_go_or_change_its_mind_while_frames_load() {
     app.world_mut().despawn(entity);
     app.update();
 
+    let (mut app, gates) = gated(6);
     let first = start(&mut app, &gates, 4);
     let other = open(
         &app,

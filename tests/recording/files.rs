@@ -73,10 +73,11 @@ fn attributes_of_other_tools_are_found() {
     assert_eq!(frame.radius, Some(0.375), "the mean");
 
     let text = "# vtk DataFile Version 4.1\nparticles\nASCII\nDATASET POLYDATA\nPOINTS 2 double\n\
-                1 2 3 4 5 6\nPOINT_DATA 2\nFIELD attributes 2\nids 1 2 vtktypeint64\n8 9\n\
+                1 2 3 4 5 6\nPOINT_DATA 2\nFIELD attributes 2\nids 1 2 long\n8 9\n\
                 velocities 3 2 float\n0 1 0 0 2 0\n";
     let frame = ParticleFrame::parse("a.vtk", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(frame.positions.len(), 2);
+    assert_eq!(frame.ids, [8, 9]);
     assert_eq!(frame.velocities, [Vec3::Y, 2.0 * Vec3::Y]);
 }
 
@@ -86,8 +87,7 @@ fn ids_that_are_none_count_as_none() {
         ("7", true),
         ("-1", false),
         ("0.5", false),
-        ("1e12", false),
-        ("nan", false),
+        ("5000000000.0", false),
     ] {
         let text = format!(
             "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\

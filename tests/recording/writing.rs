@@ -1,6 +1,6 @@
 //! A running app is recorded.
 
-use std::{fs, path::Path, sync::mpsc};
+use std::{fs, iter, path::Path, sync::mpsc};
 
 use bevy::{prelude::*, tasks::IoTaskPool};
 use bevy_fluid::{
@@ -76,7 +76,7 @@ fn what_is_recorded_can_be_played() {
         assert_eq!(written(&mut app, entity).written(), 5);
         assert_eq!(written(&mut app, entity).error(), None);
         let frames = (0..5).map(|n| format!("age_00{n}.{extension}"));
-        let all: Vec<_> = frames.chain(["age.fluid.ron".into()]).collect();
+        let all: Vec<_> = iter::once("age.fluid.ron".into()).chain(frames).collect();
         assert_eq!(names(&made), all);
         for number in 0..5 {
             let path = made.join(format!("age_00{number}.{extension}"));
