@@ -113,7 +113,7 @@ impl Plugin for FluidPlugin {
     }
 }
 
-/// The README's code is compiled with the doc tests.
-#[cfg(doctest)]
+/// The README's code is compiled with the doc tests, where the features are there that it shows.
+#[cfg(all(doctest, feature = "recordings"))]
 #[doc = include_str!("../README.md")]
 struct Readme;
