@@ -38,7 +38,8 @@
 //!
 //! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
 //! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
-//! [`FluidSystems::Simulate`]. They do not push each other.
+//! [`FluidSystems::Simulate`]. They do not push each other. With the feature `recordings`, `recording`
+//! plays numbered particle files into them, loaded in the background, and writes such files.
 //!
 //! # Looking inside
 //!
@@ -62,6 +63,8 @@ mod particles;
 pub mod rain;
 mod random;
 mod range;
+#[cfg(feature = "recordings")]
+pub mod recording;
 pub mod render;
 mod schedule;
 mod settings;
@@ -136,10 +139,12 @@ impl Plugin for FluidPlugin {
         .register_type::<SurfaceKernel>()
         .register_type::<ScreenSpaceFluid>()
         .register_type::<FluidDebugView>();
+        #[cfg(feature = "recordings")]
+        app.add_plugins(recording::RecordingPlugin);
     }
 }
 
-/// The README's code is compiled with the doc tests.
-#[cfg(doctest)]
+/// The README's code is compiled with the doc tests, where the features are there that it shows.
+#[cfg(all(doctest, feature = "recordings"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

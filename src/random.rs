@@ -9,6 +9,13 @@ impl Random {
         Self(seed)
     }
 
+    /// One of several independent sequences of a seed.
+    pub(crate) fn sequence(seed: u64, index: u64) -> Self {
+        let mut random = Self(seed ^ index.wrapping_mul(0xD134_2543_DE82_EF95));
+        random.next();
+        random
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;

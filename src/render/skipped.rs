@@ -298,12 +298,12 @@ mod tests {
         let reports = PlanReports::default();
         assert_eq!(reports.begin(), None);
         reports.ask();
-        let mut report = reports.clone().begin().unwrap();
+        let mut report = reports.begin().unwrap();
         report.push(ViewReport {
             camera: Entity::PLACEHOLDER,
             bodies: vec![],
         });
-        reports.clone().end(Some(report));
+        reports.end(Some(report));
         assert_eq!(reports.begin(), None);
         reports.end(None);
         assert_eq!(reports.latest().len(), 1);
