@@ -33,21 +33,21 @@ pub struct ScreenSpaceFluid {
 }
 
 impl ScreenSpaceFluid {
-    /// One refraction over separably smoothed depth. Time 0.43 (box) to 0.66 (ball) of the
-    /// default's; FLIP 0.60 and 0.43 against its 0.53 and 0.26.
+    /// One refraction over separably smoothed depth. Time 0.48 (box) to 0.71 (ball) of the
+    /// default's; FLIP 0.60 and 0.42 against its 0.53 and 0.24.
     pub const FAST: Self = Self {
         refractions: Refractions::One,
         ..Self::DEFAULT
     };
 
     /// As near to the truth as the method gets: searched in eight steps first.
-    /// Time 1.08 of the default's; FLIP 0.53 (box) and 0.25 (ball).
+    /// Time 1.06 of the default's; FLIP 0.53 (box) and 0.23 (ball).
     pub const ACCURATE: Self = Self {
         search: Search::Bracketed { coarse_samples: 8 },
         ..Self::DEFAULT
     };
 
-    /// The default: FLIP 0.53 (box) and 0.26 (ball), normals off by 1.3° in the median.
+    /// The default: FLIP 0.53 (box) and 0.24 (ball), normals off by 1.0° in the median.
     pub const DEFAULT: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),
         refractions: Refractions::Four,
@@ -57,8 +57,8 @@ impl ScreenSpaceFluid {
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.
-    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 1.46 (box) and
-    /// 1.62 (ball) of the default's; FLIP 0.56 and 0.43.
+    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and
+    /// 2.1 (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
         refractions: Refractions::Four,
@@ -69,7 +69,7 @@ impl ScreenSpaceFluid {
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
     /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
-    /// Time 2.0 (box) and 3.1 (ball) of the default's; FLIP 0.56 and 0.39.
+    /// Time 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
         refractions: Refractions::Two,
