@@ -187,12 +187,15 @@ fn plane(options: &Options, name: &'static str, degrees: f64, pixels: f64) -> Sc
     // What is nearer to the eye than the middle needs less, what is farther more.
     let along = seen / degrees.to_radians().cos();
     let half = dvec2(1.0 + along / FAR, 1.0) * dvec2(seen, 1.6 * along) + 4.0 * RADIUS;
-    close_up(
-        name,
-        scene::tilted_plate(RADIUS, degrees, half),
-        side,
-        pixels,
-    )
+    let plate = scene::tilted_plate(RADIUS, degrees, half);
+    Scene {
+        // Behind all of it: what opaque things hide is not drawn.
+        around: Surroundings {
+            floor: -4.0,
+            wall: -6.0 - half.y,
+        },
+        ..close_up(name, plate, side, pixels)
+    }
 }
 
 /// A ball of ten particle radii, whole.
