@@ -1,6 +1,7 @@
 //! How long the passes take: all methods in turn, so that a drifting machine favours none.
 
-use bevy::diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore};
+use bevy::diagnostic::{Diagnostic, DiagnosticsStore};
+use bevy_fluid::diagnostics::gpu_time;
 use indicatif::ProgressBar;
 
 use crate::{
@@ -128,8 +129,7 @@ fn frames(rig: &Rig) -> Vec<[f64; PASSES.len()]> {
         return Vec::new();
     };
     let histories = PASSES.map(|(pass, ..)| {
-        let path = DiagnosticPath::new(format!("render/{pass}/elapsed_gpu"));
-        let values = store.get(&path).map(Diagnostic::values);
+        let values = store.get(&gpu_time(pass)).map(Diagnostic::values);
         values.map_or(Vec::new(), |values| values.copied().collect::<Vec<_>>())
     });
     let count = histories.iter().map(Vec::len).max().unwrap_or(0);

@@ -217,13 +217,66 @@ pub(crate) fn draw_splats<'a>(
     }
 }
 
+/// What a pass that draws splats asks of a view.
+pub(crate) type SplatView = (
+    &'static ExtractedCamera,
+    &'static ViewBodies,
+    Option<&'static MainPassResolutionOverride>,
+);
+
+/// A pass that sums something up over splats, into a texture of every body that has one.
+pub(crate) struct SplatSum<'a, 'w, 's> {
+    /// Of the pass and its time span.
+    pub(crate) label: &'static str,
+    pub(crate) fluids: &'a Query<'w, 's, &'static GpuSplats>,
+    pub(crate) cache: &'a PipelineCache,
+    pub(crate) classes: &'a [Class],
+}
+
+impl SplatSum<'_, '_, '_> {
+    /// `sum` picks a body's texture and the pipeline that draws to it.
+    pub(crate) fn draw(
+        &self,
+        (camera, bodies, resolution): (
+            &ExtractedCamera,
+            &ViewBodies,
+            Option<&MainPassResolutionOverride>,
+        ),
+        ctx: &mut RenderContext,
+        sum: impl Fn(&Body) -> Option<(&CachedTexture, CachedRenderPipelineId)>,
+    ) {
+        let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
+        let span = recorder.time_span(ctx.command_encoder(), self.label);
+        for body in bodies.ready() {
+            let Some((target, pipeline)) = sum(body)
+                .and_then(|(target, id)| Some((target, self.cache.get_render_pipeline(id)?)))
+            else {
+                continue;
+            };
+            let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+                label: Some(self.label),
+                color_attachments: &[Some(cleared(&target.default_view, [0.0; 4]))],
+                ..default()
+            });
+            if let Some(viewport) = &viewport {
+                pass.set_camera_viewport(viewport);
+            }
+            body.set_scissor(&mut pass);
+            pass.set_render_pipeline(pipeline);
+            body.set_common(&mut pass);
+            for &class in self.classes {
+                draw_splats(&mut pass, body, class, self.fluids);
+            }
+        }
+        span.end(ctx.command_encoder());
+    }
+}
+
 /// The pass: splats of all bodies into their layers.
 pub(crate) fn splat(
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ViewBodies,
-        Option<&MainPassResolutionOverride>,
-    )>,
+    view: ViewQuery<SplatView>,
     fluids: Query<&GpuSplats>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
