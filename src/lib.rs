@@ -57,6 +57,7 @@ pub mod diagnostics;
 mod emitter;
 #[cfg(feature = "inspector")]
 pub mod inspector;
+mod limits;
 mod material;
 mod medium;
 mod particles;

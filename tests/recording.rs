@@ -1,6 +1,6 @@
 //! Recordings: files as assets, sequences, playing, writing.
 
-#[path = "hard_cases/log.rs"]
+#[path = "common/log.rs"]
 mod log;
 
 #[path = "recording/background.rs"]

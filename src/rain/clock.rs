@@ -61,14 +61,8 @@ pub(crate) fn advance_clocks(
         return;
     };
     for (rain, transform, mut clock) in &mut cameras {
-        let (rain, sane) = rain.sane();
-        if !sane {
-            bevy::utils::once!(warn!(
-                "a `Rain` has settings out of their range: they are clamped"
-            ));
-        }
-        let height = f64::from(transform.translation().y);
-        clock.advance(time.delta_secs_f64(), rain.wind, ready.speed, height);
+        let (wind, height) = (rain.clamped().wind, transform.translation().y);
+        clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }
 

@@ -33,6 +33,7 @@
 //! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs.
 
 mod bake;
+mod check;
 mod clock;
 pub mod densities;
 mod draw;
@@ -48,6 +49,7 @@ use bevy::{
 
 pub use self::{
     bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
+    check::RainError,
     clock::RainClock,
     draw::RainQuads,
     drops::DragLaw,
@@ -74,7 +76,7 @@ impl Plugin for RainPlugin {
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
             .add_systems(
                 PostUpdate,
-                (bake::bake_streaks, clock::advance_clocks)
+                (check::check_rain, bake::bake_streaks, clock::advance_clocks)
                     .chain()
                     .after(TransformSystems::Propagate),
             )

@@ -1,7 +1,7 @@
 //! Emitters: how many particles come out and where, how they fly, bounce, slide and vanish, against
 //! closed forms.
 
-#[path = "../hard_cases/log.rs"]
+#[path = "../common/log.rs"]
 mod log;
 
 mod births;

@@ -69,7 +69,7 @@ impl RenderCommand<Transparent3d> for DrawItem {
         else {
             return RenderCommandResult::Skip;
         };
-        pass.set_bind_group(0, group, &[quads.view_offset, quads.uniform_offset]);
+        pass.set_bind_group(0, &group.group, &[quads.view_offset, quads.uniform_offset]);
         let index = index as usize;
         if index == BACKDROP {
             pass.draw(0..3, 0..1);

@@ -79,7 +79,7 @@ pub(crate) fn extract_rain(
     mut commands: Commands,
 ) {
     for (entity, rain, clock, own_ambient, light, skybox) in &cameras {
-        let (rain, _) = rain.sane();
+        let rain = rain.clamped();
         let known = extracted.get_mut(entity);
         let ready = streaks.ready().filter(|_| rain.rate > 0.0);
         let Some(streaks) = ready else {

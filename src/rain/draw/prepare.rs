@@ -26,7 +26,7 @@ use super::{
     lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels},
     lights::{NearLights, suns},
     pipeline::{RainKey, RainPart, RainPipeline},
-    view::{MAX_SHELLS, RainQuads, levels},
+    view::{MAX_SHELLS, RainBindGroup, RainQuads, levels},
 };
 use crate::rain::drops::{LARGEST, SMALLEST, count};
 
@@ -284,24 +284,52 @@ pub(crate) fn prepare_rain_bind_groups(
         let environment = environment_of(extracted, &images)
             .and_then(|map| images.get(map.image))
             .unwrap_or(&fallback.cube);
-        let group = (|| {
-            let streaks = images.get(&extracted.streaks.image)?;
-            let depth = quads.depth.as_ref()?;
-            let multisampled = usize::from(msaa.samples() > 1);
-            Some(device.create_bind_group(
-                "rain",
-                &cache.get_bind_group_layout(&pipeline.layouts[multisampled]),
-                &BindGroupEntries::sequential((
-                    view_uniforms.uniforms.binding()?,
-                    buffers.uniforms.binding()?,
-                    &depth.default_view,
-                    &environment.texture_view,
-                    &environment.sampler,
-                    &streaks.texture_view,
-                    &streaks.sampler,
-                )),
+        let sources = (|| {
+            Some((
+                view_uniforms.uniforms.buffer()?.id(),
+                buffers.uniforms.buffer()?.id(),
+                view_uniforms.uniforms.binding()?,
+                buffers.uniforms.binding()?,
+                &quads.depth.as_ref()?.default_view,
+                images.get(&extracted.streaks.image)?,
             ))
         })();
-        quads.bind_group = group;
+        let Some((views_id, rain_id, views, rain, depth, streaks)) = sources else {
+            quads.bind_group = None;
+            continue;
+        };
+        let ids = (
+            [views_id, rain_id],
+            [
+                depth.id(),
+                environment.texture_view.id(),
+                streaks.texture_view.id(),
+            ],
+        );
+        if let Some(known) = &quads.bind_group
+            && (known.buffers, known.textures) == ids
+        {
+            continue;
+        }
+        let multisampled = usize::from(msaa.samples() > 1);
+        let group = device.create_bind_group(
+            "rain",
+            &cache.get_bind_group_layout(&pipeline.layouts[multisampled]),
+            &BindGroupEntries::sequential((
+                views,
+                rain,
+                depth,
+                &environment.texture_view,
+                &environment.sampler,
+                &streaks.texture_view,
+                &streaks.sampler,
+            )),
+        );
+        let (buffers, textures) = ids;
+        quads.bind_group = Some(RainBindGroup {
+            group,
+            buffers,
+            textures,
+        });
     }
 }

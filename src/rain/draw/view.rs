@@ -5,7 +5,7 @@ use core::ops::Range;
 use bevy::{
     prelude::*,
     render::{
-        render_resource::{BindGroup, BufferUsages, RawBufferVec},
+        render_resource::{BindGroup, BufferId, BufferUsages, RawBufferVec, TextureViewId},
         texture::CachedTexture,
     },
 };
@@ -36,9 +36,16 @@ pub struct RainQuads {
     /// Indices to draw for every cell of drops.
     pub(crate) drop_indices: u32,
     pub(crate) depth: Option<CachedTexture>,
-    pub(crate) bind_group: Option<BindGroup>,
+    pub(crate) bind_group: Option<RainBindGroup>,
     pub(crate) uniform_offset: u32,
     pub(crate) view_offset: u32,
+}
+
+/// What the shaders read, and what it was made of: it holds until that is another.
+pub(crate) struct RainBindGroup {
+    pub(crate) group: BindGroup,
+    pub(crate) buffers: [BufferId; 2],
+    pub(crate) textures: [TextureViewId; 3],
 }
 
 /// Voxels at about the same distance from the eye.
