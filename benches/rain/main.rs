@@ -11,7 +11,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use bevy::math::{UVec2, uvec2};
 
-use measure::{Case, Pair, bake_ms, extinction_ratio};
+use measure::{Case, Pair, View, bake_ms, extinction_ratio};
 
 fn main() -> ExitCode {
     match run() {
@@ -68,13 +68,22 @@ fn run() -> anyhow::Result<()> {
 
 /// What is measured at which size.
 fn plan(quick: bool) -> Vec<(UVec2, Vec<Case>)> {
-    let case = |rate, distance| Case { rate, distance };
+    let seen = |rate, distance, view| Case {
+        rate,
+        distance,
+        view,
+    };
+    let case = |rate, distance| seen(rate, distance, View::Perspective);
+    let others = [View::Multisampled, View::Orthographic].map(|view| seen(10.0, 10.0, view));
     if quick {
-        return vec![(uvec2(320, 180), vec![case(10.0, 5.0), case(10.0, 10.0)])];
+        let mut few = vec![case(10.0, 5.0), case(10.0, 10.0)];
+        few.extend(others);
+        return vec![(uvec2(320, 180), few)];
     }
     let all = [5.0, 10.0]
         .into_iter()
-        .flat_map(|distance| [1.0, 5.0, 10.0, 20.0].map(|rate| case(rate, distance)));
+        .flat_map(|distance| [1.0, 5.0, 10.0, 20.0].map(|rate| case(rate, distance)))
+        .chain(others);
     vec![
         (uvec2(320, 180), vec![case(10.0, 5.0), case(10.0, 10.0)]),
         (uvec2(640, 360), all.collect()),

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use bevy::{
-    camera::{Exposure as CameraExposure, Hdr},
+    camera::{Exposure as CameraExposure, Hdr, ScalingMode},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     diagnostic::{DiagnosticPath, DiagnosticsStore},
     prelude::*,
@@ -37,6 +37,46 @@ pub(crate) struct Case {
     pub(crate) rate: f32,
     /// m.
     pub(crate) distance: f32,
+    pub(crate) view: View,
+}
+
+/// How rain is looked at.
+#[derive(Clone, Copy, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum View {
+    Perspective,
+    /// The same with four samples a pixel.
+    Multisampled,
+    /// Six metres high.
+    Orthographic,
+}
+
+impl View {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Perspective => "perspective",
+            Self::Multisampled => "perspective, MSAA ×4",
+            Self::Orthographic => "orthographic",
+        }
+    }
+
+    fn bundle(self) -> impl Bundle {
+        let projection = match self {
+            Self::Orthographic => Projection::Orthographic(OrthographicProjection {
+                near: 0.0,
+                scaling_mode: ScalingMode::FixedVertical {
+                    viewport_height: 6.0,
+                },
+                ..OrthographicProjection::default_3d()
+            }),
+            Self::Perspective | Self::Multisampled => Projection::default(),
+        };
+        let msaa = match self {
+            Self::Multisampled => Msaa::Sample4,
+            Self::Perspective | Self::Orthographic => Msaa::Off,
+        };
+        (projection, msaa)
+    }
 }
 
 /// One line of the table.
@@ -47,6 +87,7 @@ pub(crate) struct Row {
     pub(crate) height: u32,
     pub(crate) rate: f32,
     pub(crate) distance: f32,
+    pub(crate) view: View,
     /// Medians of the GPU's time for the pass, ms.
     pub(crate) streaks_ms: f64,
     pub(crate) drops_ms: f64,
@@ -69,11 +110,12 @@ impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}x{} {} mm/h {} m: {:.2} / {:.2} ms = {:.1} x, depth {:.3} / {:.3}, difference {:.3} (own {:.3}), variance {:.2}",
+            "{}x{} {} mm/h {} m, {}: {:.2} / {:.2} ms = {:.1} x, depth {:.3} / {:.3}, difference {:.3} (own {:.3}), variance {:.2}",
             self.width,
             self.height,
             self.rate,
             self.distance,
+            self.view.name(),
             self.streaks_ms,
             self.drops_ms,
             self.speedup,
@@ -115,7 +157,6 @@ impl Rainy {
                     ..default()
                 },
                 Hdr,
-                Msaa::Off,
                 Tonemapping::None,
                 DebandDither::Disabled,
                 UNIT_EXPOSURE,
@@ -142,7 +183,8 @@ impl Rainy {
             method: self.method,
             ..Rain::falling(case.rate)
         };
-        self.app.world_mut().entity_mut(self.camera).insert(rain);
+        let bundle = (rain, case.view.bundle());
+        self.app.world_mut().entity_mut(self.camera).insert(bundle);
         settle(&mut self.app)?;
         // Long enough for every drop to be elsewhere.
         set_time_step(&mut self.app, Duration::from_secs_f64(0.37));
@@ -223,6 +265,7 @@ impl Pair {
             height: self.size.y,
             rate: case.rate,
             distance: case.distance,
+            view: case.view,
             streaks_ms,
             drops_ms,
             streaks_frame_ms: median(streak_looks.iter().map(|look| look.0)),
@@ -326,6 +369,7 @@ pub(crate) fn extinction_ratio(
         rainy.set(Case {
             rate,
             distance: 10.0,
+            view: View::Perspective,
         })?;
         let mut sum = 0.0;
         for look in 0..frames {

@@ -71,15 +71,16 @@ fn summary(
     )?;
     writeln!(
         text,
-        "| size | mm/h | m | streaks ms | drops ms | times faster | depth, streaks | depth, drops | difference | variance |\n\
-         |---|---|---|---|---|---|---|---|---|---|"
+        "| size | view | mm/h | m | streaks ms | drops ms | times faster | depth, streaks | depth, drops | difference | variance |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|"
     )?;
     for row in rows {
         writeln!(
             text,
-            "| {}×{} | {} | {} | {:.1} | {:.1} | {:.1} | {:.3} | {:.3} | {:.3} ({:.3}) | {:.2} |",
+            "| {}×{} | {} | {} | {} | {:.1} | {:.1} | {:.1} | {:.3} | {:.3} | {:.3} ({:.3}) | {:.2} |",
             row.width,
             row.height,
+            row.view.name(),
             row.rate,
             row.distance,
             row.streaks_ms,

@@ -60,7 +60,8 @@ fn liquids_hide_what_is_behind_them() {
     set_rain(&mut app, white_rain(20.0, 10.0));
     let ratio = optical_depth(&mut app, 24) / (extinction(20.0) * 2.5);
     println!("{ratio:.4}");
-    assert!((1.0..1.2).contains(&ratio), "{ratio}");
+    // As for the wall above, but its front is a particle's radius nearer.
+    assert!((0.97..1.2).contains(&ratio), "{ratio}");
 }
 
 /// A transparent thing hides as much, though it is drawn among the voxels.

@@ -1,7 +1,7 @@
 // Streaks of the drops in a voxel, on a billboard that stands along the fall and faces the eye.
 
 #import bevy_fluid::rain::draw::common::{
-    clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
+    clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
     scene_view_depth, streak_sampler, streaks, surroundings, view,
 }
 #import bevy_fluid::rain::draw::types::{STREAK_TEXELS, VARIANTS, Voxel}
@@ -12,7 +12,7 @@ struct Varying {
     // In the textures, from the voxel's own tile on. Unit: m.
     @location(1) place: vec2<f32>,
     @location(2) light: vec3<f32>,
-    @location(3) @interpolate(flat) radius: f32,
+    @location(3) @interpolate(flat) inverse_radius: f32,
     @location(4) @interpolate(flat) tile: i32,
     @location(5) @interpolate(flat) hash: u32,
     @location(6) @interpolate(flat) lamps: u32,
@@ -36,7 +36,7 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
     // Every column has its own place in the textures.
     out.place = at + vec2(f32(quad.hash & 31u) / 32.0, quad.fraction + rain.fallen);
     out.light = surroundings(ray_to(out.position));
-    out.radius = quad.radius;
+    out.inverse_radius = 1.0 / quad.radius;
     out.tile = quad.tile + rain.fallen_tiles;
     out.hash = quad.hash;
     out.lamps = quad.lamps;
@@ -58,26 +58,27 @@ fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let ray = ray_to(in.position);
     let view_depth = dot(in.position, rain.forward);
     // Distances across the fall, along which voxels are counted.
+    let square = dot(in.position, in.position);
+    let ray = select(rain.forward, in.position * inverseSqrt(square), rain.perspective == 1u);
     let along = dot(ray, rain.axis);
-    let steepness = max(sqrt(max(1.0 - along * along, 0.0)), STEEPEST);
-    let reach = length(in.position - dot(in.position, rain.axis) * rain.axis);
-    let distance = select(view_depth * steepness, reach, rain.perspective == 1u);
+    let across = sqrt(max(1.0 - along * along, 0.0));
+    let inverse_steepness = 1.0 / max(across, STEEPEST);
+    let distance = across * select(view_depth, sqrt(square), rain.perspective == 1u);
     // The part of the voxel that is before the scene, within the level's range and in sight.
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
-    let end = min(min(level.end, rain.distance * steepness), scene);
+    let end = min(min(level.end, rain.distance * max(across, STEEPEST)), scene);
     let part = min(distance + 0.5 * level.size, end) - max(distance - 0.5 * level.size, level.start);
     if part <= 0.0 {
         discard;
     }
-    let texels = max(STREAK_TEXELS.x, STREAK_TEXELS.y / steepness);
-    let mip = log2(max(texels / pixels_per_metre(view_depth), 1.0));
+    let texels = max(STREAK_TEXELS.x, STREAK_TEXELS.y * inverse_steepness);
+    let mip = log2(max(texels * metres_per_pixel(view_depth), 1.0));
     // Off the billboard's middle, fewer billboards are met at an angle than straight ahead.
-    let facing = select(1.0, min(distance / in.radius, 4.0), rain.perspective == 1u);
-    let counts = part / level.size * facing * rain.axis.y / steepness;
+    let facing = select(1.0, min(distance * in.inverse_radius, 4.0), rain.perspective == 1u);
+    let counts = part * level.inverse_size * facing * rain.axis.y * inverse_steepness;
     let opacity = min(opacity_of_streaks(in, mip) * counts, 1.0);
     if opacity < LEAST || is_sheltered(in.position) {
         discard;

@@ -50,10 +50,10 @@ fn scene_view_depth(pixel: vec2<f32>) -> f32 {
     return -position.z / position.w;
 }
 
-// How many pixels a metre across the view spans.
-fn pixels_per_metre(view_depth: f32) -> f32 {
-    let focal = 0.5 * view.main_pass_viewport.w * abs(view.clip_from_view[1][1]);
-    return select(focal, focal / max(view_depth, 1e-4), rain.perspective == 1u);
+// How much a pixel spans across the view.
+fn metres_per_pixel(view_depth: f32) -> f32 {
+    let inverse_focal = 2.0 / (view.main_pass_viewport.w * abs(view.clip_from_view[1][1]));
+    return inverse_focal * select(1.0, max(view_depth, 1e-4), rain.perspective == 1u);
 }
 
 fn environment(direction: vec3<f32>) -> vec3<f32> {
@@ -75,9 +75,12 @@ fn surroundings(direction: vec3<f32>) -> vec3<f32> {
 // would receive, times the phase function. Falloff, cone and range are Bevy's.
 fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
     var light = vec3(0.0);
+#ifdef SUNS
     for (var i = 0u; i < rain.sun_count; i += 1u) {
         light += rain.suns[i].illuminance * phase(dot(rain.suns[i].direction, -ray));
     }
+#endif
+#ifdef LAMPS
     for (var left = lamps; left != 0u; left &= left - 1u) {
         let lamp = rain.lights[firstTrailingBit(left)];
         let way = position - lamp.position;
@@ -91,11 +94,13 @@ fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
             light += lamp.intensity * attenuation * phase(dot(direction, -ray));
         }
     }
+#endif
     return light;
 }
 
 // Whether a shelter is on the way from which drops come.
 fn is_sheltered(position: vec3<f32>) -> bool {
+#ifdef SHELTERS
     for (var i = 0u; i < rain.shelter_count; i += 1u) {
         let local_from_relative = rain.shelters[i].local_from_relative;
         let start = (local_from_relative * vec4(position, 1.0)).xyz;
@@ -111,6 +116,7 @@ fn is_sheltered(position: vec3<f32>) -> bool {
             return true;
         }
     }
+#endif
     return false;
 }
 

@@ -2,7 +2,7 @@
 // everywhere as the truth that billboards are measured against.
 
 #import bevy_fluid::rain::draw::common::{
-    PI, clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
+    PI, clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
     scene_view_depth, surroundings, view,
 }
 #import bevy_fluid::rain::draw::types::{SPEED_STEP, Voxel}
@@ -63,6 +63,10 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let left = start - fract(fallen);
     let height = fract(left);
     let copy = hash(slot ^ hash(u32(row + i32(floor(fallen)) - i32(floor(left)))));
+    // The last one is there as often as it takes for the mean.
+    if f32(index / 4u) + uniform_of(hash(copy ^ 0x1B56C4E9u)) >= rain.drops * cell.size * cell.size * cell.size {
+        return nothing();
+    }
     // Columns of cells lean as drops of mean speed fall. What is faster or slower drifts through
     // its column, in at one side as it goes out at the other.
     let drift = rain.drift * (1.0 - falls / rain.mean_speed) / cell.size;
@@ -90,8 +94,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let screen = 0.5 * view.main_pass_viewport.zw;
     let from_pixel = a.xy / a.w * screen;
     let to_pixel = b.xy / b.w * screen;
-    let scale = pixels_per_metre(view_depth);
-    let drop = 1e-3 * diameter * scale;
+    let drop = 1e-3 * diameter / metres_per_pixel(view_depth);
     let width = max(drop, 1.0);
     var along = to_pixel - from_pixel;
     let pixels = length(along);

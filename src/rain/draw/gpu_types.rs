@@ -18,6 +18,7 @@ pub(crate) const SPEED_VECTORS: usize = 16;
 pub(crate) struct GpuRainLevel {
     pub(crate) weights: Vec4,
     pub(crate) size: f32,
+    pub(crate) inverse_size: f32,
     pub(crate) start: f32,
     pub(crate) end: f32,
 }
@@ -61,6 +62,7 @@ pub(crate) struct GpuRain {
     pub(crate) fallen_tiles: i32,
     pub(crate) fallen: f32,
     pub(crate) drops_end: f32,
+    pub(crate) drops: f32,
     pub(crate) exposure: f32,
     pub(crate) seconds: f32,
     pub(crate) wind: Vec2,

@@ -34,7 +34,7 @@ pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
 ];
 
 /// Cells of drops one by one: small ones, for few drops are drawn beyond the view.
-pub(crate) const NEAR_CELLS: Level = level(0.5, 0.0, NEAR);
+pub(crate) const NEAR_CELLS: Level = level(0.25, 0.0, NEAR);
 /// The same however far away they are: larger ones, for they are many.
 pub(crate) const ALL_CELLS: Level = level(1.0, 0.0, f32::INFINITY);
 

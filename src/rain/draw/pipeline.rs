@@ -19,7 +19,7 @@ use bevy::{
         },
         view::ViewUniform,
     },
-    shader::Shader,
+    shader::{Shader, ShaderDefVal},
 };
 
 use super::gpu_types::GpuRain;
@@ -40,6 +40,29 @@ pub(crate) struct RainKey {
     pub(crate) part: RainPart,
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
+    pub(crate) scene: RainScene,
+}
+
+/// What of it there is in the scene. Shaders are made without what there is not: a loop over no lamps
+/// still costs, on a software renderer as much as all the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RainScene {
+    pub(crate) suns: bool,
+    pub(crate) lamps: bool,
+    pub(crate) shelters: bool,
+}
+
+impl RainScene {
+    pub(crate) const NOTHING: Self = Self {
+        suns: false,
+        lamps: false,
+        shelters: false,
+    };
+    pub(crate) const ALL: Self = Self {
+        suns: true,
+        lamps: true,
+        shelters: true,
+    };
 }
 
 #[derive(Resource)]
@@ -100,11 +123,21 @@ impl SpecializedRenderPipeline for RainPipeline {
 
     fn specialize(&self, key: RainKey) -> RenderPipelineDescriptor {
         let multisampled = key.samples > 1;
-        let shader_defs = if multisampled {
-            vec!["MULTISAMPLED".into()]
-        } else {
-            vec![]
-        };
+        let RainScene {
+            suns,
+            lamps,
+            shelters,
+        } = key.scene;
+        let shader_defs: Vec<ShaderDefVal> = [
+            (multisampled, "MULTISAMPLED"),
+            (suns, "SUNS"),
+            (lamps, "LAMPS"),
+            (shelters, "SHELTERS"),
+        ]
+        .into_iter()
+        .filter(|(is_there, _)| *is_there)
+        .map(|(_, name)| name.into())
+        .collect();
         let (label, shader, topology) = match key.part {
             RainPart::Backdrop => (
                 "rain_backdrop",

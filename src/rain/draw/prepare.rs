@@ -25,10 +25,9 @@ use super::{
     gpu_types::{GpuQuad, GpuRain},
     lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels},
     lights::{NearLights, suns},
-    pipeline::{RainKey, RainPart, RainPipeline},
+    pipeline::{RainKey, RainPart, RainPipeline, RainScene},
     view::{MAX_SHELLS, RainBindGroup, RainQuads, levels},
 };
-use crate::rain::drops::{LARGEST, SMALLEST, count};
 
 /// What all views share.
 #[derive(Resource)]
@@ -150,8 +149,8 @@ pub(crate) fn queue_rain(
                 rain.distance,
                 keep,
             );
-            let drops = count(f64::from(rain.rate), SMALLEST, LARGEST) as f32 * cells.size.powi(3);
-            quads.drop_indices = 6 * (drops.round() as u32).min(MAX_DROPS);
+            let drops = gpu.drops * cells.size.powi(3);
+            quads.drop_indices = 6 * (drops.ceil() as u32).min(MAX_DROPS);
             quads.cells = voxels as u32..quads.instances.len() as u32;
         }
         if too_many {
@@ -160,14 +159,33 @@ pub(crate) fn queue_rain(
             ));
         }
         quads.uniform_offset = buffers.uniforms.push(&gpu);
+        let scene = RainScene {
+            suns: gpu.sun_count > 0,
+            lamps: !buffers.near.is_empty(),
+            shelters: gpu.shelter_count > 0,
+        };
         let [backdrop, billboards, drops] =
             [RainPart::Backdrop, RainPart::Billboards, RainPart::Drops].map(|part| {
-                let key = RainKey {
-                    part,
-                    format: view.target_format,
-                    samples: msaa.samples(),
+                let mut of = |scene| {
+                    let key = RainKey {
+                        part,
+                        format: view.target_format,
+                        samples: msaa.samples(),
+                        scene,
+                    };
+                    pipelines.specialize(&cache, &pipeline, key)
                 };
-                pipelines.specialize(&cache, &pipeline, key)
+                // The backdrop is lit by what surrounds it alone.
+                let wanted = of(if part == RainPart::Backdrop {
+                    RainScene::NOTHING
+                } else {
+                    scene
+                });
+                // When the first lamp comes, rain must not be gone until its shader is compiled.
+                match cache.get_render_pipeline(wanted) {
+                    Some(_) => wanted,
+                    None => of(RainScene::ALL),
+                }
             });
 
         let mut add = |item: usize, distance: f32, pipeline| {

@@ -18,7 +18,7 @@ use fluid_stage::{headless_app, settle, step};
 use super::{
     RainQuads,
     gpu_types::GpuQuad,
-    pipeline::{RainKey, RainPart, RainPipeline},
+    pipeline::{RainKey, RainPart, RainPipeline, RainScene},
     prepare::{prepare_rain_bind_groups, queue_rain},
 };
 use crate::rain::{
@@ -42,12 +42,20 @@ fn every_part_of_rain_is_made() {
     for part in [RainPart::Backdrop, RainPart::Billboards, RainPart::Drops] {
         for format in [TextureFormat::Rgba16Float, TextureFormat::Rgba8UnormSrgb] {
             for samples in [1, 4] {
-                let key = RainKey {
-                    part,
-                    format,
-                    samples,
-                };
-                ids.push(cache.queue_render_pipeline(pipeline.specialize(key)));
+                for scene in 0..8 {
+                    let scene = RainScene {
+                        suns: scene & 1 != 0,
+                        lamps: scene & 2 != 0,
+                        shelters: scene & 4 != 0,
+                    };
+                    let key = RainKey {
+                        part,
+                        format,
+                        samples,
+                        scene,
+                    };
+                    ids.push(cache.queue_render_pipeline(pipeline.specialize(key)));
+                }
             }
         }
     }

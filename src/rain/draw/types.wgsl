@@ -7,6 +7,7 @@ struct GpuRainLevel {
     weights: vec4<f32>,
     // Side of its voxels.
     size: f32,
+    inverse_size: f32,
     // Distances from the eye, across the fall, that its voxels stand for.
     start: f32,
     end: f32,
@@ -59,6 +60,8 @@ struct GpuRain {
     fallen: f32,
     // Drops one by one: up to which distance across the fall there are any.
     drops_end: f32,
+    // How many there are in a cubic metre.
+    drops: f32,
     exposure: f32,
     // For how long they have fallen, and how far the air has gone meanwhile.
     seconds: f32,

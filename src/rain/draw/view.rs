@@ -19,7 +19,7 @@ use super::{
 };
 use crate::rain::{
     densities::density_weights,
-    drops::{LARGEST, SMALLEST, extinction, slope},
+    drops::{LARGEST, SMALLEST, count, extinction, slope},
     settings::RainMethod,
 };
 
@@ -154,6 +154,7 @@ impl GpuRain {
             fallen_tiles: clock.fallen.floor() as i64 as i32,
             fallen: (clock.fallen - clock.fallen.floor()) as f32,
             drops_end: drops_end.min(1e9),
+            drops: count(rate, SMALLEST, LARGEST) as f32,
             exposure: streaks.input.exposure,
             seconds: clock.seconds as f32,
             wind: rain.wind,
@@ -174,6 +175,7 @@ impl GpuRain {
             *gpu = GpuRainLevel {
                 weights: density_weights(wanted, streaks.extinction) * streaks.scale,
                 size: level.size,
+                inverse_size: level.size.recip(),
                 start: level.start,
                 end: level.end,
             };

@@ -60,6 +60,7 @@ fn cells_of_drops_fill_the_air_near_the_eye() {
         let cells = cells(&eye, &clock);
         let axis = fall_axis(clock.lean);
         let forward = eye.forward;
+        let half = 0.5 * NEAR_CELLS.size;
         let mut checked = 0;
         for i in 0..40_000 {
             let random = |k: u32| (hash([i, k, 5]) >> 8) as f32 / 8_388_608.0 - 1.0;
@@ -76,7 +77,7 @@ fn cells_of_drops_fill_the_air_near_the_eye() {
                     let mut way = head - cell.center;
                     way -= axis / axis.y * way.y;
                     let up = (head - cell.center).y;
-                    way.abs().max_element() <= 0.25 && up.abs() <= 0.25
+                    way.abs().max_element() <= half && up.abs() <= half
                 });
                 assert_eq!(holding.count(), 1, "{head}");
             }
