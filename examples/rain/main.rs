@@ -52,7 +52,7 @@ struct Args {
     #[arg(long, default_value = "1280x720", value_parser = size)]
     size: UVec2,
     /// Frames before the picture is taken
-    #[arg(long, default_value = "30")]
+    #[arg(long, default_value = "45")]
     frames: u32,
 }
 
@@ -117,7 +117,7 @@ fn main() -> AppExit {
 fn setup(mut scenery: Scenery, args: Res<Args>, mut ambient: ResMut<GlobalAmbientLight>) {
     ambient.brightness = 0.0;
     let lit_by = street::light(&mut scenery, args.scene.is_night());
-    street::build(&mut scenery);
+    street::build(&mut scenery, args.scene.is_night());
     let (eye, target) = args.scene.view();
     let rain = Rain {
         distance: args.distance,

@@ -19,10 +19,12 @@ const LAMP: Vec3 = vec3(-1.2, 4.2, -3.2);
 /// Where the car's headlights are, and where they shine.
 const HEADLIGHTS: [Vec3; 2] = [vec3(0.0, 0.65, -0.3), vec3(0.0, 0.65, 0.9)];
 const AHEAD: Vec3 = vec3(1.0, -0.06, 0.0);
-/// The fountain: centre of its floor, and half of its sides.
+/// The fountain: centre of its floor, half of the sides of its water, particle radii of that and of
+/// the jet.
 const FOUNTAIN: Vec3 = vec3(1.6, 0.0, -2.3);
-const BASIN: Vec3 = vec3(0.9, 0.22, 0.5);
-const RADIUS: f32 = 0.035;
+const BASIN: Vec3 = vec3(25.0 * RADIUS, 6.0 * RADIUS, 14.0 * RADIUS);
+const RADIUS: f32 = 0.036;
+const DROP: f32 = 0.016;
 /// Texels along a face of the sky.
 const SKY_SIDE: u32 = 32;
 
@@ -140,7 +142,7 @@ fn lamps(scenery: &mut Scenery) {
     }
 }
 
-pub(crate) fn build(scenery: &mut Scenery) {
+pub(crate) fn build(scenery: &mut Scenery, night: bool) {
     let asphalt = Color::srgb(0.16, 0.16, 0.17);
     let paving = Color::srgb(0.34, 0.33, 0.31);
     block(
@@ -165,17 +167,21 @@ pub(crate) fn build(scenery: &mut Scenery) {
             vec3(4.8, height, 4.0),
             wall,
         );
-        for window in [-1.2, 1.2] {
-            let at = vec3(x + window, 1.7, -6.4);
-            block(
-                scenery,
-                at,
-                vec3(1.0, 1.4, 0.06),
-                Color::srgb(0.08, 0.09, 0.11),
-            );
+        for (storey, y) in [1.7, 4.1].into_iter().enumerate() {
+            for (side, window) in [-1.2, 1.2].into_iter().enumerate() {
+                let at = vec3(x + window, y, -6.4);
+                // At night somebody is at home.
+                let lit = night && (usize::from(house) + 2 * storey + 3 * side) % 5 == 0;
+                let glass = Color::srgb(0.08, 0.09, 0.11);
+                let entity = block(scenery, at, vec3(1.0, 1.4, 0.06), glass);
+                if lit {
+                    let light = LinearRgba::rgb(1.0, 0.6, 0.25) * 0.5;
+                    glow(scenery, entity, light);
+                }
+            }
         }
     }
-    // The lamp's post, the car, the bus shelter.
+    // The lamp's post, the bus shelter.
     let metal = Color::srgb(0.12, 0.13, 0.14);
     block(
         scenery,
@@ -189,14 +195,7 @@ pub(crate) fn build(scenery: &mut Scenery) {
         vec3(0.3, 0.06, 0.7),
         metal,
     );
-    let paint = Color::srgb(0.35, 0.05, 0.06);
-    block(scenery, vec3(-2.1, 0.6, 0.3), vec3(4.1, 0.6, 1.6), paint);
-    block(
-        scenery,
-        vec3(-2.6, 1.15, 0.3),
-        vec3(1.8, 0.5, 1.4),
-        Color::srgb(0.05, 0.05, 0.06),
-    );
+    car(scenery);
     let roof = vec3(3.0, 2.5, -4.6);
     let size = vec3(2.8, 0.1, 1.8);
     let entity = block(scenery, roof, size, Color::srgb(0.25, 0.3, 0.3));
@@ -207,6 +206,52 @@ pub(crate) fn build(scenery: &mut Scenery) {
         block(scenery, vec3(x, 1.25, -5.4), vec3(0.08, 2.5, 0.08), metal);
     }
     fountain(scenery);
+}
+
+/// Its headlights are where [`HEADLIGHTS`] says.
+fn car(scenery: &mut Scenery) {
+    let paint = Color::srgb(0.35, 0.05, 0.06);
+    let glass = Color::srgb(0.03, 0.035, 0.04);
+    let rubber = Color::srgb(0.03, 0.03, 0.03);
+    for (at, size, color) in [
+        (vec3(-2.1, 0.56, 0.3), vec3(4.1, 0.5, 1.64), paint),
+        (vec3(-2.25, 0.83, 0.3), vec3(3.6, 0.14, 1.56), paint),
+        (vec3(-2.6, 1.08, 0.3), vec3(1.9, 0.4, 1.42), glass),
+        (vec3(-2.65, 1.31, 0.3), vec3(1.7, 0.07, 1.38), paint),
+        (vec3(-0.03, 0.42, 0.3), vec3(0.14, 0.16, 1.7), rubber),
+    ] {
+        block(scenery, at, size, color);
+    }
+    // The pillars between its windows.
+    for x in [-1.72, -2.62, -3.48] {
+        block(scenery, vec3(x, 1.09, 0.3), vec3(0.07, 0.42, 1.44), paint);
+    }
+    let tyre = scenery.meshes.add(Cylinder::new(0.33, 0.22));
+    let material = scenery.materials.add(StandardMaterial {
+        base_color: rubber,
+        perceptual_roughness: 0.8,
+        ..default()
+    });
+    for (x, z) in [(-0.8, -0.48), (-0.8, 1.08), (-3.4, -0.48), (-3.4, 1.08)] {
+        scenery.commands.spawn((
+            Mesh3d(tyre.clone()),
+            MeshMaterial3d(material.clone()),
+            Transform::from_xyz(x, 0.33, z)
+                .with_rotation(Quat::from_rotation_x(core::f32::consts::FRAC_PI_2)),
+        ));
+    }
+}
+
+fn glow(scenery: &mut Scenery, entity: Entity, emissive: LinearRgba) {
+    let material = scenery.materials.add(StandardMaterial {
+        base_color: Color::BLACK,
+        emissive,
+        ..default()
+    });
+    scenery
+        .commands
+        .entity(entity)
+        .insert(MeshMaterial3d(material));
 }
 
 fn block(scenery: &mut Scenery, at: Vec3, size: Vec3, color: Color) -> Entity {
@@ -227,7 +272,7 @@ fn block(scenery: &mut Scenery, at: Vec3, size: Vec3, color: Color) -> Entity {
         .id()
 }
 
-/// A basin full of water.
+/// A basin full of water, and a jet that falls back into it.
 fn fountain(scenery: &mut Scenery) {
     let stone = Color::srgb(0.5, 0.48, 0.44);
     let wall = 0.12;
@@ -244,7 +289,7 @@ fn fountain(scenery: &mut Scenery) {
             stone,
         );
     }
-    let count = (BASIN / RADIUS).floor().as_ivec3();
+    let count = (BASIN / RADIUS).round().as_ivec3();
     let first = FOUNTAIN - vec3(BASIN.x, 0.0, BASIN.z) + Vec3::splat(RADIUS);
     let water = (0..count.y).flat_map(|y| {
         (0..count.x * count.z)
@@ -253,5 +298,16 @@ fn fountain(scenery: &mut Scenery) {
     scenery.commands.spawn((
         FluidParticles::new(water.collect(), RADIUS),
         FluidMaterial::WATER,
+    ));
+    scenery.commands.spawn((
+        ParticleEmitter {
+            particle_radius: DROP,
+            nozzle: 0.02,
+            spread: 0.09,
+            jitter: 0.25,
+            lifetime: 0.7,
+            ..ParticleEmitter::fountain(5000.0, 3.4)
+        },
+        Transform::from_translation(FOUNTAIN + 2.0 * BASIN.y * Vec3::Y),
     ));
 }

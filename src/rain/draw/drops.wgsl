@@ -18,6 +18,14 @@ struct Varying {
     @location(4) @interpolate(flat) view_depth: f32,
 }
 
+// What is drawn around a streak, in pixels: half a pixel for its soft edge, and as far as samples lie
+// off the pixel's centre, where its opacity is taken for all of them.
+#ifdef MULTISAMPLED
+const EDGE: f32 = 1.2;
+#else
+const EDGE: f32 = 0.5;
+#endif
+
 // PCG (Jarzynski and Olano 2020).
 fn hash(seed: u32) -> u32 {
     let state = seed * 747796405u + 2891336453u;
@@ -109,8 +117,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     out.opacity = 0.25 * PI * drop * drop * slant / (size.x * size.y);
     out.view_depth = view_depth;
     let corner = vec2(f32(index & 1u), f32((index >> 1u) & 1u)) * 2.0 - 1.0;
-    // Half a pixel more on each side, for the soft edge.
-    out.place = corner * (out.half_size + 0.5);
+    out.place = corner * (out.half_size + EDGE);
     let pixel = 0.5 * (from_pixel + to_pixel)
         + vec2(along.y, -along.x) * out.place.x + along * out.place.y;
     let depth = 0.5 * (a.z / a.w + b.z / b.w);
