@@ -6,7 +6,10 @@ use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{ColliderShape, EmitterBounds, ParticleCollider, ParticleEmitter};
-use crate::complaints::{AboutField, Complaints};
+use crate::{
+    complaints::{AboutField, Complaints},
+    limits::Limited,
+};
 
 /// More particles than this are no use to anyone, and would take gigabytes.
 const MAX_PARTICLES: u32 = 10_000_000;
@@ -55,80 +58,47 @@ impl AboutField for EmitterError {
     }
 }
 
-/// A number, the range that it must be in, and what stands in for one that is none.
-struct Field<'a> {
-    name: &'static str,
-    value: &'a mut f32,
-    min: f32,
-    max: f32,
-    absent: f32,
-}
-
-impl Field<'_> {
-    fn check(&self, component: &'static str) -> Result<(), EmitterError> {
-        // NaN is in no range.
-        if (self.min..=self.max).contains(self.value) {
+impl EmitterError {
+    fn check(component: &'static str, limited: &Limited) -> Result<(), Self> {
+        if limited.is_inside() {
             return Ok(());
         }
-        Err(EmitterError::Range {
+        Err(Self::Range {
             component,
-            field: self.name,
-            value: *self.value,
-            min: self.min,
-            max: self.max,
+            field: limited.name,
+            value: *limited.value,
+            min: limited.min,
+            max: limited.max,
         })
-    }
-
-    fn clamp(&mut self) {
-        *self.value = if self.value.is_nan() {
-            self.absent
-        } else {
-            self.value.clamp(self.min, self.max)
-        };
-    }
-}
-
-fn field<'a>(
-    name: &'static str,
-    value: &'a mut f32,
-    [min, max]: [f32; 2],
-    absent: f32,
-) -> Field<'a> {
-    Field {
-        name,
-        value,
-        min,
-        max,
-        absent,
     }
 }
 
 impl ParticleEmitter {
-    fn fields(&mut self) -> [Field<'_>; 11] {
+    fn fields(&mut self) -> [Limited<'_>; 11] {
         let absent = Self::DEFAULT;
         let [x, y, z] = self.gravity.as_mut();
         [
-            field("rate", &mut self.rate, [0.0, 1e7], absent.rate),
-            field("speed", &mut self.speed, [0.0, 1e3], absent.speed),
-            field("spread", &mut self.spread, [0.0, PI], absent.spread),
-            field("nozzle", &mut self.nozzle, [0.0, 1e3], absent.nozzle),
-            field("jitter", &mut self.jitter, [0.0, 1e3], absent.jitter),
-            field(
+            Limited::new("rate", &mut self.rate, [0.0, 1e7], absent.rate),
+            Limited::new("speed", &mut self.speed, [0.0, 1e3], absent.speed),
+            Limited::new("spread", &mut self.spread, [0.0, PI], absent.spread),
+            Limited::new("nozzle", &mut self.nozzle, [0.0, 1e3], absent.nozzle),
+            Limited::new("jitter", &mut self.jitter, [0.0, 1e3], absent.jitter),
+            Limited::new(
                 "particle_radius",
                 &mut self.particle_radius,
                 [1e-6, 1e6],
                 absent.particle_radius,
             ),
-            field(
+            Limited::new(
                 "lifetime",
                 &mut self.lifetime,
                 [0.0, f32::INFINITY],
                 absent.lifetime,
             ),
-            field("gravity.x", x, [-1e3, 1e3], absent.gravity.x),
-            field("gravity.y", y, [-1e3, 1e3], absent.gravity.y),
-            field("gravity.z", z, [-1e3, 1e3], absent.gravity.z),
-            field("drag", &mut self.drag, [0.0, 1e3], absent.drag),
+            Limited::new("gravity.x", x, [-1e3, 1e3], absent.gravity.x),
+            Limited::new("gravity.y", y, [-1e3, 1e3], absent.gravity.y),
+            Limited::new("gravity.z", z, [-1e3, 1e3], absent.gravity.z),
+            Limited::new("drag", &mut self.drag, [0.0, 1e3], absent.drag),
         ]
     }
 
@@ -138,7 +108,7 @@ impl ParticleEmitter {
     /// The first field that is out of its range, by name and value.
     pub fn validate(&self) -> Result<(), EmitterError> {
         for field in { *self }.fields() {
-            field.check("ParticleEmitter")?;
+            EmitterError::check("ParticleEmitter", &field)?;
         }
         if !self.has_direction() {
             return Err(EmitterError::Direction(self.direction));
@@ -159,7 +129,7 @@ impl ParticleEmitter {
     /// number gives way to the default, bounds that nothing is in to none.
     pub fn clamped(&self) -> Self {
         let mut clamped = *self;
-        clamped.fields().iter_mut().for_each(Field::clamp);
+        clamped.fields().iter_mut().for_each(Limited::clamp);
         if !self.has_direction() {
             clamped.direction = Self::DEFAULT.direction;
         }
@@ -176,31 +146,31 @@ impl ParticleEmitter {
 }
 
 impl ParticleCollider {
-    fn with_fields<T>(&mut self, f: impl FnOnce(&mut [Field<'_>]) -> T) -> T {
+    fn with_fields<T>(&mut self, f: impl FnOnce(&mut [Limited<'_>]) -> T) -> T {
         const LENGTHS: [f32; 2] = [0.0, 1e6];
         let absent = Self::DEFAULT;
-        let restitution = field(
+        let restitution = Limited::new(
             "restitution",
             &mut self.restitution,
             [0.0, 1.0],
             absent.restitution,
         );
-        let friction = field("friction", &mut self.friction, [0.0, 1e3], absent.friction);
+        let friction = Limited::new("friction", &mut self.friction, [0.0, 1e3], absent.friction);
         match &mut self.shape {
             ColliderShape::Ground => f(&mut [restitution, friction]),
             ColliderShape::Sphere { radius } => f(&mut [
                 restitution,
                 friction,
-                field("shape.radius", radius, LENGTHS, 0.0),
+                Limited::new("shape.radius", radius, LENGTHS, 0.0),
             ]),
             ColliderShape::Cuboid { half_size } => {
                 let [x, y, z] = half_size.as_mut();
                 f(&mut [
                     restitution,
                     friction,
-                    field("shape.half_size.x", x, LENGTHS, 0.0),
-                    field("shape.half_size.y", y, LENGTHS, 0.0),
-                    field("shape.half_size.z", z, LENGTHS, 0.0),
+                    Limited::new("shape.half_size.x", x, LENGTHS, 0.0),
+                    Limited::new("shape.half_size.y", y, LENGTHS, 0.0),
+                    Limited::new("shape.half_size.z", z, LENGTHS, 0.0),
                 ])
             }
             ColliderShape::Capsule {
@@ -209,8 +179,8 @@ impl ParticleCollider {
             } => f(&mut [
                 restitution,
                 friction,
-                field("shape.radius", radius, LENGTHS, 0.0),
-                field("shape.half_length", half_length, LENGTHS, 0.0),
+                Limited::new("shape.radius", radius, LENGTHS, 0.0),
+                Limited::new("shape.half_length", half_length, LENGTHS, 0.0),
             ]),
         }
     }
@@ -223,7 +193,7 @@ impl ParticleCollider {
         { *self }.with_fields(|fields| {
             fields
                 .iter()
-                .try_for_each(|field| field.check("ParticleCollider"))
+                .try_for_each(|field| EmitterError::check("ParticleCollider", field))
         })
     }
 
@@ -231,7 +201,7 @@ impl ParticleCollider {
     /// number gives way to the default.
     pub fn clamped(&self) -> Self {
         let mut clamped = *self;
-        clamped.with_fields(|fields| fields.iter_mut().for_each(Field::clamp));
+        clamped.with_fields(|fields| fields.iter_mut().for_each(Limited::clamp));
         clamped
     }
 }
