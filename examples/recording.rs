@@ -43,8 +43,8 @@ use fluid_stage::{
 const TANK: Vec3 = vec3(1.6, 0.9, 0.7);
 /// The dam at its left wall, m.
 const DAM: Vec2 = vec2(0.6, 0.7);
-/// Particle radius of the dam, m: about 2,400 particles.
-const RADIUS: f32 = 0.025;
+/// Particle radius of the dam, m: about 4,600 particles.
+const RADIUS: f32 = 0.02;
 /// Recorded frames of the dam per second: too few to be looked at without interpolation.
 const RATE: f32 = 12.0;
 /// How long the dam is recorded, s.
@@ -252,7 +252,7 @@ fn open(mut commands: Commands, args: Res<Args>, assets: Res<AssetServer>) {
         },
         FluidMaterial {
             // A lake's water, so that depth shows in a tank.
-            medium: Medium::absorbing(LinearRgba::rgb(0.3, 0.72, 0.8), 1.0),
+            medium: Medium::absorbing(LinearRgba::rgb(0.2, 0.65, 0.75), 1.0),
             ..FluidMaterial::WATER
         },
     ));
