@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 
-/// Shows an intermediate result of a camera with [`ScreenSpaceFluid`] in place of the liquid.
+/// Shows an intermediate result of a camera with [`ScreenSpaceFluid`](super::ScreenSpaceFluid) in
+/// place of the liquid.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Component, Clone, PartialEq)]
 pub enum FluidDebugView {

@@ -10,7 +10,7 @@ use bevy::{
 use super::job::Job;
 use crate::recording::frame::FrameError;
 
-/// What a [`RecordingWriter`] has written.
+/// What a [`RecordingWriter`](super::RecordingWriter) has written.
 #[derive(Component, Debug, Default)]
 pub struct WrittenFrames {
     pub(super) pattern: String,
