@@ -13,7 +13,8 @@ use fluid_stage::{
     scenery::{Scenery, orbit_camera},
 };
 
-/// Particle radius of the jets and of the water in the basin, m.
+/// Particle radius of the column, of the jets and of the water in the basin, m.
+const COLUMN: f32 = 0.014;
 const DROP: f32 = 0.0105;
 const POOL: f32 = 0.022;
 /// The basin's radius and the depth of its water, m.
@@ -43,13 +44,12 @@ fn water(mut commands: Commands) {
     let (radius, height) = BALL;
     commands.spawn((
         ParticleEmitter {
-            particle_radius: DROP,
+            particle_radius: COLUMN,
             nozzle: 0.03,
-            spread: 0.06,
-            jitter: 0.45,
-            drag: 0.2,
+            spread: 0.05,
+            jitter: 0.2,
             lifetime: 1.5,
-            ..ParticleEmitter::fountain(20_000.0, 4.4)
+            ..ParticleEmitter::fountain(16_000.0, 4.0)
         },
         Transform::from_xyz(0.0, height + radius + 0.02, 0.0),
     ));

@@ -6,8 +6,8 @@
 //! cargo run --release --features recordings --example recording -- --file 'frames/dam_####.vtk'
 //! ```
 //! `--file` plays recordings of your own. Space pauses, left and right seek, B turns the time around;
-//! the mouse turns the camera. `--out FILE.png --time SECONDS` writes a picture instead. Try
-//! `--no-interpolation`, `--speed 0.2`.
+//! the mouse turns the camera. `--out FILE.png --time SECONDS [--frames N]` writes a picture instead.
+//! Try `--no-interpolation`, `--speed 0.2`.
 
 use std::{
     env,
@@ -34,7 +34,7 @@ use clap::Parser;
 use fluid_stage::{
     PendingPicture, StagePlugins, VIEW_SIZE, capture, headless_app,
     scenery::{Scenery, frame_camera, orbit_camera},
-    settle,
+    set_time_step, settle,
     simulation::{Simulation, dam},
     step,
 };
@@ -43,13 +43,13 @@ use fluid_stage::{
 const TANK: Vec3 = vec3(1.6, 0.9, 0.7);
 /// The dam at its left wall, m.
 const DAM: Vec2 = vec2(0.6, 0.7);
-/// Particle radius of the dam, m: about 2,400 particles.
-const RADIUS: f32 = 0.025;
+/// Particle radius of the dam, m: about 4,600 particles.
+const RADIUS: f32 = 0.02;
 /// Recorded frames of the dam per second: too few to be looked at without interpolation.
 const RATE: f32 = 12.0;
 /// How long the dam is recorded, s.
 const SECONDS: f32 = 2.5;
-/// Of the simulation, s.
+/// Of the simulation, and of the frames of a picture, s.
 const STEP: f32 = 1.0 / 60.0;
 const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 
@@ -78,9 +78,12 @@ struct Args {
     /// Without a window: the picture to write (PNG)
     #[arg(long)]
     out: Option<PathBuf>,
-    /// The moment that the picture shows, in seconds
+    /// The moment that the picture shows, or from which its frames are played, in seconds
     #[arg(long, default_value = "0.7")]
     time: f64,
+    /// Frames of 1/60 s that are played before the picture is taken
+    #[arg(long, default_value = "0")]
+    frames: u32,
     /// Width and height in pixels
     #[arg(long, default_value = "1280x720", value_parser = size)]
     size: UVec2,
@@ -114,7 +117,7 @@ fn run(mut args: Args) -> anyhow::Result<ExitCode> {
             args.is_dam = true;
         }
     }
-    let (size, time) = (args.size, args.time);
+    let (size, time, frames) = (args.size, args.time, args.frames);
     let configure = move |app: &mut App| {
         app.add_plugins(FluidPlugin::default())
             .insert_resource(args)
@@ -139,11 +142,16 @@ fn run(mut args: Args) -> anyhow::Result<ExitCode> {
     let mut players = app.world_mut().query::<&mut RecordingPlayer>();
     for mut player in players.iter_mut(app.world_mut()) {
         player.seek(time);
-        player.paused = true;
     }
     wait_for_frames(&mut app)?;
     // The scene is built of the first frame that is there.
     settle(&mut app)?;
+    for _ in 0..frames {
+        set_time_step(&mut app, Duration::from_secs_f32(STEP));
+        step(&mut app, 1);
+        set_time_step(&mut app, Duration::ZERO);
+        wait_for_frames(&mut app)?;
+    }
     picture.commit(capture(&mut app)?)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -244,7 +252,7 @@ fn open(mut commands: Commands, args: Res<Args>, assets: Res<AssetServer>) {
         },
         FluidMaterial {
             // A lake's water, so that depth shows in a tank.
-            medium: Medium::absorbing(LinearRgba::rgb(0.3, 0.72, 0.8), 1.0),
+            medium: Medium::absorbing(LinearRgba::rgb(0.2, 0.65, 0.75), 1.0),
             ..FluidMaterial::WATER
         },
     ));

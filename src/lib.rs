@@ -52,6 +52,8 @@
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod complaints;
 pub mod diagnostics;
 mod emitter;

@@ -17,10 +17,11 @@ use crate::{
 #[reflect(Component, Default, Clone)]
 #[require(FluidMaterial, SurfaceKernel, ShapedFluid, Transform, Visibility)]
 pub struct FluidParticles {
-    /// Centres in the entity's space. Unit: m. Particles that are not finite are dropped and
-    /// counted in [`ShapedFluid::dropped`].
+    /// Centres in the entity's space. Unit: m, default: none. Particles that are not finite are
+    /// dropped and counted in [`ShapedFluid::dropped`].
     pub positions: Vec<Vec3>,
-    /// Radius of every particle, half the distance between neighbours at rest. Unit: m, > 0.
+    /// Radius of every particle, half the distance between neighbours at rest. Unit: m, range
+    /// 1e-9..=1e9, default 0, which only a fluid without particles may have.
     #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open())]
     pub radius: f32,
 }

@@ -25,6 +25,13 @@ use fluid_stage::{ball, capture, headless_app, set_time_step, settle, step, vali
 
 const SIZE: UVec2 = uvec2(640, 480);
 
+/// A resource that has joined.
+#[derive(Resource, Clone, PartialEq, Reflect)]
+#[reflect(Resource)]
+struct Weather {
+    wet: bool,
+}
+
 /// How often the system that stands for the camera's controls has run.
 #[derive(Resource, Default)]
 struct CameraMoves(u32);
@@ -38,7 +45,10 @@ fn show() -> App {
                 (|mut moves: ResMut<CameraMoves>| moves.0 += 1)
                     .run_if(not(inspector_wants_pointer)),
             );
+        app.register_type::<Weather>()
+            .insert_resource(Weather { wet: true });
         let world = app.world_mut();
+        world.resource_mut::<FluidInspector>().show::<Weather>();
         world.spawn((
             Name::new("pond"),
             FluidParticles::new(ball(0.4, 0.05), 0.05),
@@ -397,13 +407,11 @@ fn presets_variants_and_views_are_chosen_from_lists() {
     );
 }
 
-#[test]
-fn settings_are_copied_as_code() {
-    let mut app = opened();
-    let mut cameras = app.world_mut().query::<&mut ScreenSpaceFluid>();
-    *cameras.single_mut(app.world_mut()).unwrap() = ScreenSpaceFluid::FAST;
-    let rect = in_sight(&mut app, "Button", "Copy as Rust");
-    send(&mut app, [Event::PointerMoved(rect.center())]);
+/// What a button puts into the clipboard.
+#[track_caller]
+fn copied(app: &mut App, button: &str) -> String {
+    let rect = in_sight(app, "Button", button);
+    send(app, [Event::PointerMoved(rect.center())]);
     let mut copied = Vec::new();
     for pressed in [true, false] {
         let event = Event::PointerButton {
@@ -412,15 +420,42 @@ fn settings_are_copied_as_code() {
             pressed,
             modifiers: default(),
         };
-        send(&mut app, [event]);
-        let context = context(&mut app);
+        send(app, [event]);
+        let context = context(app);
         let output = app.world().get::<EguiOutput>(context).unwrap();
         copied.extend(output.platform_output.commands.clone());
     }
-    let code = "ScreenSpaceFluid {\n    refractions: Refractions::One,\n    ..default()\n}";
+    match &copied[..] {
+        [OutputCommand::CopyText(text)] => text.clone(),
+        _ => panic!("{copied:?}"),
+    }
+}
+
+#[test]
+fn settings_are_copied_as_code() {
+    let mut app = opened();
+    let mut cameras = app.world_mut().query::<&mut ScreenSpaceFluid>();
+    *cameras.single_mut(app.world_mut()).unwrap() = ScreenSpaceFluid::FAST;
+    let settings = "ScreenSpaceFluid {\n    refractions: Refractions::One,\n    ..default()\n}";
+    assert_eq!(copied(&mut app, "Copy as Rust"), settings);
+
+    let camera = copied(&mut app, "copy camera");
     assert!(
-        matches!(&copied[..], [OutputCommand::CopyText(text)] if text == code),
-        "{copied:?}"
+        camera.starts_with("commands.spawn((\n    Name::new(\"eye\"),\n"),
+        "{camera}"
+    );
+    assert!(camera.contains("\n    Camera3d::default(),\n"), "{camera}");
+    assert!(
+        camera.contains(&settings.replace('\n', "\n    ")),
+        "{camera}"
+    );
+    let fluid = copied(&mut app, "copy fluid");
+    let [name, kernel] = ["Name::new(\"pond\")", "SurfaceKernel::default()"];
+    assert!(fluid.contains(name) && fluid.contains(kernel), "{fluid}");
+    let resource = "commands.insert_resource(Weather {\n    wet: true,\n});";
+    assert_eq!(
+        copied(&mut app, "Copy all as Rust"),
+        format!("{camera}\n{fluid}\n{resource}")
     );
 }
 

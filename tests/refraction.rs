@@ -323,7 +323,7 @@ fn both_searches_find_the_same_surface() {
             let turned = angle(a.direction, b.direction);
             assert!(turned < 1.5, "{pixel}: {turned}° apart");
         }
-        // METHOD 5: the secant fails for some 4 % of all rays.
+        // The secant fails for some 4 % of all rays.
         assert!(hits > 7500, "{hits} of {}", bracketed.len());
     }
 }

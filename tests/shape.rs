@@ -154,6 +154,12 @@ fn h03_a_radius_that_is_no_length_is_an_error() {
         assert!(matches!(error, ShapeError::Radius(r) if r.to_bits() == radius.to_bits()));
         assert!(error.to_string().contains("radius"), "{error}");
         assert_eq!((splats.splats.len(), splats.spray), (0, 0));
+        // What is empty yet has none.
+        let mut splats = shape(&[Vec3::ZERO]);
+        ShapeWorkspace::default()
+            .shape(&[], radius, &SurfaceKernel::default(), &mut splats)
+            .unwrap();
+        assert_eq!((splats.splats.len(), splats.spray), (0, 0));
     }
 }
 

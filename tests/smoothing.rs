@@ -226,7 +226,7 @@ fn bumps_are_smoothed_away() {
     for degrees in [0.0_f32, 60.0] {
         let rotation = Quat::from_rotation_y(degrees.to_radians());
         let normal = (rotation * Vec3::Z).as_dvec3();
-        // 6.4 pixels a radius, as in METHOD 4.2.
+        // 6.4 pixels a radius.
         pour(&mut app, bumpy_slab(0.05, rotation));
         look(&mut app, RAW);
         let (raw, raw_normal) = bumpiness(&view, &app, normal);

@@ -109,6 +109,11 @@ fn setup(mut scenery: Scenery, scene: Res<ScenePlugin>) {
     }
     scenery.commands.spawn((
         FluidParticles::new(scene.positions.clone(), scene.radius),
+        FluidMaterial {
+            // A lake's water, whatever the file's unit is, so that depth shows.
+            medium: Medium::absorbing(LinearRgba::rgb(0.2, 0.62, 0.75), 0.5 * size.max_element()),
+            ..FluidMaterial::WATER
+        },
         SurfaceKernel {
             anisotropic: !scene.isotropic,
             ..default()

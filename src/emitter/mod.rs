@@ -5,8 +5,10 @@
 
 mod check;
 mod colliders;
+mod contact;
 mod distance;
 mod emission;
+mod flight;
 mod motion;
 mod particles;
 

@@ -10,7 +10,8 @@ use super::{
     EmitterBounds, EmitterError, ExternalMotion, ParticleCollider, ParticleEmitter,
     colliders::{ColliderPath, Colliders},
     emission::{Birth, Emission},
-    motion::{Forces, Step},
+    flight::Forces,
+    motion::Step,
     step,
 };
 use crate::{complaints::Complaints, particles::FluidParticles};

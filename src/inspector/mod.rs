@@ -40,7 +40,7 @@ use bevy::{prelude::*, reflect::GetTypeRegistration};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, input::EguiWantsInput};
 
 pub use presets::{Presets, ReflectPresets};
-pub use rust_code::rust_code;
+pub use rust_code::{rust_code, spawn_code};
 
 use crate::{
     FluidDiagnosticsPlugin, FluidMaterial, FluidParticles, ParticleCollider, ParticleEmitter, Rain,

@@ -20,7 +20,8 @@ pub struct FluidMaterial {
     /// Higher: rays bend more and more light is reflected; 1: neither, as in smoke and fire.
     #[reflect(@SettingRange::new(0.2, 5.0))]
     pub refractive_index: f32,
-    /// What is inside.
+    /// What is inside. Default: that of [`FluidMaterial::WATER`], which lets seven tenths of the red
+    /// through a metre.
     pub medium: Medium,
     /// Perceptual roughness of the surface for the highlights of lights. Range 0.03..=1,
     /// default 0.1. Higher: wider, dimmer highlights. Refractions stay sharp.

@@ -194,7 +194,7 @@ fn mixed([a, b]: [f32; 2], [of_a, of_b]: [LinearRgba; 2]) -> (f32, LinearRgba) {
 /// `(1 − exp(-x)) / B` with `x = B d`. Its twin is `seen_length` in `medium.wgsl`.
 ///
 /// As printed it is 0/0 without extinction and loses digits near it; below x = 0.5 the series
-/// `d Σ (-x)^k / (k + 1)!` stands in (METHOD 6).
+/// `d Σ (-x)^k / (k + 1)!` stands in.
 fn seen_length(extinction: f32, distance: f32) -> f32 {
     let x = extinction * distance;
     if x >= 0.5 {

@@ -1,5 +1,7 @@
 //! Asset loaders: one frame, or the description of a recording.
 
+use std::sync::{Arc, Weak};
+
 use bevy::{
     asset::{AssetLoader, AssetServer, LoadContext, io::Reader},
     prelude::*,
@@ -48,14 +50,21 @@ impl AssetLoader for ParticleFrameLoader {
 /// Loads a [`FluidRecording`] from a `.fluid.ron` file: see [`RecordingSettings`].
 #[derive(Clone, TypePath)]
 pub struct FluidRecordingLoader {
-    /// To list the frames' folder, which the loader's context cannot.
-    server: AssetServer,
+    /// To list the frames' folder, which the loader's context cannot. The server owns its loaders:
+    /// if they owned it in turn, it would outlive its app.
+    server: Weak<AssetServer>,
 }
+
+/// What keeps the loader's server, for as long as there is a world.
+#[derive(Resource)]
+struct KeptServer(Arc<AssetServer>);
 
 impl FromWorld for FluidRecordingLoader {
     fn from_world(world: &mut World) -> Self {
+        let server = world.resource::<AssetServer>().clone();
+        let kept = world.get_resource_or_insert_with(|| KeptServer(Arc::new(server)));
         Self {
-            server: world.resource::<AssetServer>().clone(),
+            server: Arc::downgrade(&kept.0),
         }
     }
 }
@@ -83,7 +92,9 @@ impl AssetLoader for FluidRecordingLoader {
             .with_default_extension(Extensions::IMPLICIT_SOME)
             .from_bytes(&bytes)
             .map_err(|error| refuse(error.to_string()))?;
-        FluidRecording::find(&self.server, &settings, Some(&path)).await
+        let server = self.server.upgrade();
+        let server = server.ok_or_else(|| refuse("its app has ended".into()))?;
+        FluidRecording::find(&server, &settings, Some(&path)).await
     }
 
     fn extensions(&self) -> &[&str] {

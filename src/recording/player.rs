@@ -21,6 +21,9 @@ const CACHES: [usize; 2] = [2, 1024];
 /// out. The radius is the file's; else [`radius`](Self::radius), else the recording's, else the one
 /// that `FluidParticles` has.
 ///
+/// Every player has frames of its own: two that play one recording read its files twice, each at its
+/// own time.
+///
 /// Values out of their range are said once and played as the nearest in range.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]

@@ -80,7 +80,7 @@ fn has_back(layers: vec2<f32>) -> bool {
 }
 
 // The plane d = depth + slope · (pixel offset), as a unit normal in view space. A plane that is
-// affine over the screen is linear in clip space, whatever the projection (METHOD 4.2).
+// affine over the screen is linear in clip space, whatever the projection.
 fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> {
     let per_ndc = slope * view.main_pass_viewport.zw * vec2(0.5, -0.5);
     let clip_plane = vec4(-per_ndc, 1.0, dot(per_ndc, ndc) - depth);

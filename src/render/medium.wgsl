@@ -9,7 +9,7 @@ fn transmitted(extinction: vec3<f32>, path: f32) -> vec3<f32> {
 
 // The length of a path that sends as much as `path` does where `extinction` takes from it:
 // (1 − exp(−x)) / B with x = B · path. As printed it is 0/0 without extinction and loses digits
-// near it; below x = 0.5 the series path · Σ (−x)^k / (k + 1)! stands in (METHOD 6).
+// near it; below x = 0.5 the series path · Σ (−x)^k / (k + 1)! stands in.
 fn seen_length(extinction: vec3<f32>, path: f32) -> vec3<f32> {
     let d = clamp(path, 0.0, 1e30);
     let x = extinction * d;

@@ -5,8 +5,8 @@
 #import bevy_fluid::render::functions::{DepthMap, depth_map, depth_slope, pixel_from_ndc}
 
 // Where a ray is on screen and in device depth is affine in s = t / w: t is the distance along the
-// ray, w the clip coordinate there. Over a plane the layers' device depth is affine as well
-// (METHOD 4.2), so the gap between a ray and a plane is linear in s for every projection.
+// ray, w the clip coordinate there. Over a plane the layers' device depth is affine as well, so the
+// gap between a ray and a plane is linear in s for every projection.
 struct Track {
     // Device coordinates of the start, and their change with s.
     start: vec3<f32>,

@@ -105,6 +105,8 @@ impl ShapeWorkspace {
     /// Runs on rayon's current thread pool. Particles with a coordinate that is not finite,
     /// or beyond ±1e30 m, are dropped and counted in [`FluidSplats::dropped`].
     ///
+    /// Without particles any radius will do.
+    ///
     /// # Errors
     /// An unusable radius or setting, named with its value; `out` is empty then.
     pub fn shape(
@@ -117,6 +119,10 @@ impl ShapeWorkspace {
         if let Err(error) = check(positions, radius, kernel) {
             out.clear();
             return Err(error);
+        }
+        if positions.is_empty() {
+            out.clear();
+            return Ok(());
         }
 
         let start = Instant::now();
@@ -148,7 +154,8 @@ impl ShapeWorkspace {
 
 fn check(positions: &[Vec3], radius: f32, kernel: &SurfaceKernel) -> Result<(), ShapeError> {
     kernel.validate()?;
-    if !(RADII[0]..=RADII[1]).contains(&radius) {
+    // What is yet to be loaded or emitted may bring its radius along.
+    if !positions.is_empty() && !(RADII[0]..=RADII[1]).contains(&radius) {
         return Err(ShapeError::Radius(radius));
     }
     if positions.len() >= u32::MAX as usize {

@@ -1,12 +1,20 @@
 //! Loading: never in the way, never more than the cache may hold.
 
-use std::{path::Path, time::Duration};
+use std::{path::Path, sync::Arc, time::Duration};
 
 use bevy::{
-    asset::io::{AssetSourceBuilder, memory::Dir},
+    asset::io::{
+        AssetReader, AssetReaderError, AssetSourceBuilder, PathStream, Reader, memory::Dir,
+    },
     prelude::*,
+    shader::Shader,
 };
-use bevy_fluid::recording::{Interpolation, RecordingPlayer, RecordingPlugin, RecordingSettings};
+use bevy_fluid::{
+    FluidPlugin, ShapedFluid,
+    recording::{
+        FluidRecording, Interpolation, RecordingPlayer, RecordingPlugin, RecordingSettings,
+    },
+};
 
 use super::gates::{GatedReader, Gates};
 use super::{
@@ -16,6 +24,12 @@ use super::{
 
 /// Files that open when they are told to: one dot each, whose x is its number.
 fn gated(count: u32) -> (App, Gates) {
+    gated_with(count, |app| {
+        app.add_plugins(RecordingPlugin);
+    })
+}
+
+fn gated_with(count: u32, plugins: impl FnOnce(&mut App)) -> (App, Gates) {
     log::listen();
     let (files, gates) = (Dir::default(), Gates::default());
     for number in 0..count {
@@ -31,7 +45,8 @@ fn gated(count: u32) -> (App, Gates) {
         "gated",
         AssetSourceBuilder::new(move || Box::new(reader.clone())),
     )
-    .add_plugins((MinimalPlugins, AssetPlugin::default(), RecordingPlugin));
+    .add_plugins((MinimalPlugins, AssetPlugin::default()));
+    plugins(&mut app);
     stop_clock(&mut app);
     (app, gates)
 }
@@ -220,4 +235,85 @@ fn a_player_may_go_or_change_its_mind_while_frames_load() {
     wait(&mut app, shows(first, 5));
     assert_eq!(x(&app, first), 5.0);
     assert_eq!(frames(app.world(), first).held(), 1);
+}
+
+#[test]
+fn a_player_without_a_frame_yet_is_no_cause_for_complaint() {
+    let (mut app, gates) = gated_with(1, |app| {
+        app.add_plugins(TransformPlugin)
+            .init_asset::<Shader>()
+            .add_plugins(FluidPlugin::default());
+    });
+    let recording = open(&app, slowly("gated://dot_#.xyz"));
+    let player = RecordingPlayer {
+        radius: Some(0.5),
+        ..RecordingPlayer::new(recording)
+    };
+    let entity = app.world_mut().spawn(player).id();
+    wait(&mut app, |world| frames(world, entity).loading() == 1);
+    let shaped = |app: &App| app.world().get::<ShapedFluid>(entity).unwrap().clone();
+    assert_eq!((shaped(&app).generation(), shaped(&app).spray()), (1, 0));
+    gate(&gates, 0);
+    wait(&mut app, shows(entity, 0));
+    assert_eq!((shaped(&app).generation(), shaped(&app).spray()), (2, 1));
+    assert_eq!(log::said("is not drawn"), 0);
+}
+
+/// A reader that tells whether it is still there.
+#[derive(Clone)]
+struct Counted(
+    GatedReader,
+    #[expect(dead_code, reason = "only counted")] Arc<()>,
+);
+
+impl AssetReader for Counted {
+    async fn read<'a>(&'a self, path: &'a Path) -> Result<impl Reader + 'a, AssetReaderError> {
+        self.0.read(path).await
+    }
+
+    async fn read_meta<'a>(&'a self, path: &'a Path) -> Result<impl Reader + 'a, AssetReaderError> {
+        self.0.read_meta(path).await
+    }
+
+    async fn read_directory<'a>(
+        &'a self,
+        path: &'a Path,
+    ) -> Result<Box<PathStream>, AssetReaderError> {
+        self.0.read_directory(path).await
+    }
+
+    async fn is_directory<'a>(&'a self, path: &'a Path) -> Result<bool, AssetReaderError> {
+        self.0.is_directory(path).await
+    }
+}
+
+#[test]
+fn an_app_that_ends_takes_its_asset_server_along() {
+    let (files, gates, count) = (Dir::default(), Gates::default(), Arc::new(()));
+    files.insert_asset(Path::new("dot_0.xyz"), vec![0; 12]);
+    files.insert_asset(
+        Path::new("dot.fluid.ron"),
+        b"(frames: \"dot_#.xyz\")".to_vec(),
+    );
+    gates.open("dot.fluid.ron");
+    let gated = GatedReader { gates, files };
+    let reader = Counted(gated, count.clone());
+    let mut app = App::new();
+    app.register_asset_source(
+        "counted",
+        AssetSourceBuilder::new(move || Box::new(reader.clone())),
+    )
+    .add_plugins((MinimalPlugins, AssetPlugin::default(), RecordingPlugin));
+    let recording: Handle<FluidRecording> = app
+        .world()
+        .resource::<AssetServer>()
+        .load("counted://dot.fluid.ron");
+    wait(&mut app, |world| {
+        world
+            .resource::<Assets<FluidRecording>>()
+            .contains(&recording)
+    });
+    assert!(Arc::strong_count(&count) > 1);
+    drop(app);
+    assert_eq!(Arc::strong_count(&count), 1);
 }

@@ -8,7 +8,8 @@ use fluid_stage::{headless_app, set_time_step, settle, step};
 
 use crate::{
     common::{Lens, View},
-    memory::{MEBIBYTE, Memory, alone},
+    heap::alone,
+    memory::{MEBIBYTE, Memory},
     script::{RADIUS, particles, settings},
 };
 

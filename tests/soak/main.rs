@@ -3,6 +3,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/heap.rs"]
+mod heap;
 
 mod driver;
 mod memory;
@@ -65,7 +67,7 @@ fn play(play: &mut Play, duration: Duration) -> Grown {
 }
 
 fn soak(duration: Duration) {
-    let _alone = memory::alone();
+    let _alone = heap::alone();
     // Bevy itself keeps some hundred bytes of a frame in which cameras come and sizes change.
     let bevy_alone = {
         let grown = play(&mut Play::new(false), duration / 5);

@@ -1,29 +1,15 @@
 //! Whose memory it is: Rust's, the GPU's, and all that the process holds.
 
-use std::{
-    alloc::System,
-    sync::{Mutex, MutexGuard, PoisonError},
-};
-
 use bevy::{prelude::*, render::renderer::RenderDevice};
-use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 
-/// The driver is not written in Rust: what is asked of this is ours, Bevy's and wgpu's.
-#[global_allocator]
-static RUST: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+use crate::heap;
 
 pub(crate) const MEBIBYTE: f64 = 1_048_576.0;
-
-/// Memory is counted for the whole process: one test at a time.
-pub(crate) fn alone() -> MutexGuard<'static, ()> {
-    static ALONE: Mutex<()> = Mutex::new(());
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Bytes in use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Memory {
-    /// Held on the heap by Rust code.
+    /// Held on the heap by Rust code: ours, Bevy's and wgpu's, not the driver's.
     pub(crate) heap: f64,
     /// Handed out by the GPU's allocator: every texture and buffer there is.
     pub(crate) gpu: f64,
@@ -34,7 +20,7 @@ pub(crate) struct Memory {
 
 impl Memory {
     pub(crate) fn of(app: &App) -> Self {
-        let stats = RUST.stats();
+        let stats = heap::stats();
         let device = app.world().resource::<RenderDevice>();
         let report = device.wgpu_device().generate_allocator_report();
         let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();

@@ -1,13 +1,19 @@
+use core::any::TypeId;
+
 use super::*;
 use crate::{
-    Bilateral, FluidMaterial, FluidParticles, Fresnel, Medium, PlaneFit, PlaneFitForm, Rain,
-    Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Thickness, Window,
+    Bilateral, ColliderShape, EmitterBounds, FluidDebugView, FluidMaterial, FluidParticles,
+    Fresnel, Medium, ParticleCollider, ParticleEmitter, PlaneFit, PlaneFitForm, Rain, Refractions,
+    ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Thickness, Window,
     rain::{Exposure, RainStreaks},
 };
 
 fn registry() -> TypeRegistry {
     let mut registry = TypeRegistry::new();
+    registry.register::<Transform>();
     registry.register::<FluidParticles>();
+    registry.register::<ParticleEmitter>();
+    registry.register::<ParticleCollider>();
     registry.register::<FluidMaterial>();
     registry.register::<SurfaceKernel>();
     registry.register::<ScreenSpaceFluid>();
@@ -202,4 +208,104 @@ fn structs_without_a_default_list_everything_and_options_are_written_out() {
             edges: [1.0, f32::INFINITY, -1e30],
         }
     );
+}
+
+/// The code of what a system spawns is that system's, and so it compiles and spawns the same.
+macro_rules! assert_spawns {
+    ($commands:ident => $($statement:tt)*) => {
+        fn setup(mut $commands: Commands) {
+            $($statement)*
+        }
+        let registry = registry();
+        let mut world = World::new();
+        world.run_system_cached(setup).unwrap();
+        let shown = [
+            TypeId::of::<ScreenSpaceFluid>(),
+            TypeId::of::<FluidMaterial>(),
+            TypeId::of::<SurfaceKernel>(),
+            TypeId::of::<FluidParticles>(),
+            TypeId::of::<ParticleEmitter>(),
+            TypeId::of::<ParticleCollider>(),
+            TypeId::of::<RainStreaks>(),
+        ];
+        let mut entities = world.query::<EntityRef>();
+        let is_shown = |entity: &EntityRef| {
+            let ids = shown.iter().filter_map(|id| world.components().get_id(*id));
+            ids.into_iter().any(|id| entity.contains_id(id))
+        };
+        let code: Vec<_> = entities
+            .iter(&world)
+            .filter(is_shown)
+            .map(|entity| spawn_code(entity, &shown, &registry))
+            .collect();
+        let dense = |text: &str| {
+            let text = text.replace(char::is_whitespace, "");
+            text.replace(",}", "}").replace(",)", ")")
+        };
+        assert_eq!(dense(&code.concat()), dense(stringify!($($statement)*)));
+    };
+}
+
+#[test]
+fn the_code_of_an_entity_is_the_sum_of_its_parts() {
+    let registry = registry();
+    let mut world = World::new();
+    let (material, emitter) = (FluidMaterial::INK, ParticleEmitter::jet(10.0, 2.0));
+    let tap = world.spawn((Name::new("tap"), material, emitter)).id();
+    let shown = [
+        TypeId::of::<ParticleEmitter>(),
+        TypeId::of::<FluidMaterial>(),
+    ];
+    let parts = [
+        "Name::new(\"tap\")".into(),
+        rust_code(&emitter, &registry),
+        rust_code(&material, &registry),
+    ];
+    let lines = parts.map(|part| part.replace('\n', "\n    "));
+    let sum = format!("commands.spawn((\n    {},\n));", lines.join(",\n    "));
+    assert_eq!(spawn_code(world.entity(tap), &shown, &registry), sum);
+}
+
+#[test]
+fn the_code_of_a_scene_spawns_it() {
+    assert_spawns! { commands =>
+        commands.insert_resource(RainStreaks {
+            seed: 7,
+            ..default()
+        });
+        commands.spawn((
+            Name::new("eye"),
+            Camera3d::default(),
+            Transform {
+                translation: vec3(0.0, 1.0, 4.0),
+                ..default()
+            },
+            FluidDebugView::Normals,
+            ScreenSpaceFluid {
+                refractions: Refractions::Two,
+                ..default()
+            },
+        ));
+        commands.spawn((
+            Name::new("tap"),
+            FluidMaterial {
+                refractive_index: 1.2,
+                ..default()
+            },
+            SurfaceKernel::default(),
+            FluidParticles::default(),
+            ParticleEmitter {
+                rate: 250.0,
+                bounds: Some(EmitterBounds {
+                    min: vec3(-1.0, 0.0, -1.0),
+                    ..default()
+                }),
+                ..default()
+            },
+        ));
+        commands.spawn((ParticleCollider {
+            shape: ColliderShape::Sphere { radius: 0.5 },
+            ..default()
+        },));
+    }
 }

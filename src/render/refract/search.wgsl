@@ -1,4 +1,4 @@
-// Finding the next interface along a ray (METHOD 5).
+// Finding the next interface along a ray.
 #define_import_path bevy_fluid::render::refract::search
 
 #import bevy_fluid::render::bindings::{body, view}

@@ -1,5 +1,5 @@
 // Planes fitted to device depth: a weighted linear regression over pixel offsets, front and back
-// at once (METHOD 4.2).
+// at once.
 
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
 #import bevy_fluid::render::slopes::one_sided_slope

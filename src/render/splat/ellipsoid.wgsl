@@ -16,7 +16,7 @@
 // pixels and D in device depth from there, the homogeneous point of the unit sphere's space is
 // X·x + Y·y + D·d + (0, 0, 0, 1); it is on the sphere where its form xyz² − w² is zero. A
 // projective map takes quadrics to quadrics, and moving the origin to the centre keeps the
-// digits (METHOD 3).
+// digits.
 // `form` 1, cut by the near plane: columns of the map from view space to the unit sphere's, and
 // the centre in view space, each in the xyz of the same fields.
 struct EllipsoidVertex {
@@ -62,7 +62,7 @@ fn linear(m: mat4x4<f32>) -> mat3x3<f32> {
 
 // Range of a/w over the part of the ellipsoid with w >= near; a and w are rows of the map from
 // the unit sphere to clip space. Tangents that touch it in front of `near` bound it, and so does
-// the slice at `near` (METHOD 3 for the tangents). Empty: (1, −1).
+// the slice at `near`. Empty: (1, −1).
 fn bound(a: vec4<f32>, w: vec4<f32>, near: f32) -> vec2<f32> {
     var range = vec2(1e30, -1e30);
     let ww = dot(w.xyz, w.xyz) - w.w * w.w;
@@ -248,8 +248,7 @@ struct Chord {
     disc: f32,
 }
 
-// In view space (form 1): Haines' form about the point of the ray that is closest to the centre
-// (METHOD 3).
+// In view space (form 1): Haines' form about the point of the ray that is closest to the centre.
 fn chord_of(in: EllipsoidVertex) -> Chord {
     let inverse = mat3x3(in.x.xyz, in.y.xyz, in.d.xyz);
     let ray = view_ray(ndc_from_pixel(in.position.xy));

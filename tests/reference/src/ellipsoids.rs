@@ -68,7 +68,7 @@ impl Prepared {
 
     /// Where the line goes into and out of the ellipsoid scaled by `scale`.
     pub(crate) fn span(&self, ray: &Ray, scale: f64) -> Option<[f64; 2]> {
-        // From the closest approach on, so that no large numbers cancel (METHOD 3).
+        // From the closest approach on, so that no large numbers cancel.
         let start = ray.direction.dot(self.center - ray.origin);
         let o = self.local(ray.at(start));
         let d = self.inverse * ray.direction;

@@ -1,21 +1,15 @@
 //! Records a running app: one numbered file for each frame, written in the background.
 
-use std::{
-    fs, mem,
-    path::{Path, PathBuf},
-};
+mod job;
+mod written;
 
-use bevy::{
-    prelude::*,
-    tasks::{IoTaskPool, Task, block_on, futures::check_ready},
-};
+use std::path::Path;
 
-use super::{
-    asset::RecordingSettings,
-    error::RecordingError,
-    frame::{FrameError, ParticleFrame, replace},
-    pattern::FramePattern,
-};
+use bevy::{prelude::*, tasks::IoTaskPool};
+
+use self::job::description;
+pub use self::written::WrittenFrames;
+use super::{error::RecordingError, frame::is_radius, pattern::FramePattern};
 use crate::particles::FluidParticles;
 
 /// Frames of the clock may be a little short.
@@ -79,126 +73,7 @@ pub struct ParticleAttributes {
     pub velocities: Vec<Vec3>,
 }
 
-/// What a [`RecordingWriter`] has written.
-#[derive(Component, Debug, Default)]
-pub struct WrittenFrames {
-    pattern: String,
-    /// Recorded time. Unit: s.
-    elapsed: f64,
-    last: Option<u32>,
-    jobs: Vec<Task<(Job, Result<(), FrameError>)>>,
-    /// Their buffers are used again.
-    spare: Vec<Job>,
-    written: u32,
-    dropped: u32,
-    error: Option<String>,
-}
-
-/// One file to be written.
-#[derive(Debug, Default)]
-struct Job {
-    frame: ParticleFrame,
-    path: PathBuf,
-    /// A second file, with the first frame.
-    description: Option<(PathBuf, String)>,
-    bytes: Vec<u8>,
-}
-
-impl Job {
-    fn run(&mut self) -> Result<(), FrameError> {
-        let failed = |path: &Path| {
-            let name = path.display().to_string();
-            move |error: std::io::Error| FrameError::Write {
-                name,
-                reason: error.to_string(),
-            }
-        };
-        if let Some(folder) = self.path.parent() {
-            fs::create_dir_all(folder).map_err(failed(folder))?;
-        }
-        self.frame.write_with(&self.path, &mut self.bytes)?;
-        if let Some((path, text)) = self.description.take() {
-            replace(&path, text.as_bytes()).map_err(failed(&path))?;
-        }
-        Ok(())
-    }
-}
-
-impl WrittenFrames {
-    /// How many frames have been written.
-    pub fn written(&self) -> u32 {
-        self.written
-    }
-
-    /// How many frames have been left out because too many waited.
-    pub fn dropped(&self) -> u32 {
-        self.dropped
-    }
-
-    /// How many frames wait to be written.
-    pub fn waiting(&self) -> usize {
-        self.jobs.len()
-    }
-
-    /// Why the recording has ended, if it has.
-    pub fn error(&self) -> Option<&str> {
-        self.error.as_deref()
-    }
-
-    /// Waits until everything is written: for the end of a program, which would end the writing
-    /// too.
-    pub fn finish(&mut self) {
-        for task in mem::take(&mut self.jobs) {
-            let (job, result) = block_on(task);
-            self.take_back(job, result);
-        }
-    }
-
-    fn collect(&mut self) {
-        let mut at = 0;
-        while let Some(task) = self.jobs.get_mut(at) {
-            if let Some((job, result)) = check_ready(task) {
-                drop(self.jobs.swap_remove(at));
-                self.take_back(job, result);
-            } else {
-                at += 1;
-            }
-        }
-    }
-
-    fn take_back(&mut self, job: Job, result: Result<(), FrameError>) {
-        self.spare.push(job);
-        match result {
-            Ok(()) => self.written += 1,
-            Err(error) => self.fail(&error.to_string()),
-        }
-    }
-
-    fn fail(&mut self, error: &str) {
-        if self.error.is_none() {
-            warn!("the recording ends: {error}");
-            self.error = Some(error.into());
-        }
-    }
-
-    fn restart(&mut self, pattern: &str) {
-        self.pattern = pattern.into();
-        self.elapsed = 0.0;
-        self.last = None;
-        (self.written, self.dropped) = (0, 0);
-    }
-}
-
-impl Drop for WrittenFrames {
-    fn drop(&mut self) {
-        // What waits is still written where the fluid is despawned.
-        for task in self.jobs.drain(..) {
-            task.detach();
-        }
-    }
-}
-
-pub(super) fn record(
+pub(in crate::recording) fn record(
     mut writers: Query<(
         Ref<RecordingWriter>,
         &mut WrittenFrames,
@@ -281,7 +156,7 @@ fn start(
     let mut job = written.spare.pop().unwrap_or_default();
     let frame = &mut job.frame;
     frame.positions.clone_from(&particles.positions);
-    frame.radius = Some(particles.radius).filter(|&radius| super::frame::is_radius(radius));
+    frame.radius = Some(particles.radius).filter(|&radius| is_radius(radius));
     frame.ids.clear();
     frame.velocities.clear();
     if let Some(attributes) = attributes {
@@ -299,25 +174,4 @@ fn start(
         (job, result)
     }));
     Ok(())
-}
-
-/// What the `.fluid.ron` beside the frames holds.
-fn description(
-    pattern: &FramePattern,
-    writer: &RecordingWriter,
-    radius: Option<f32>,
-) -> Result<String, RecordingError> {
-    let frames = pattern.to_string();
-    let settings = RecordingSettings {
-        frames: frames[pattern.folder().len()..].into(),
-        rate: writer.rate.into(),
-        radius,
-        ..default()
-    };
-    ron::ser::to_string_pretty(&settings, default())
-        .map(|text| text + "\n")
-        .map_err(|error| RecordingError::Description {
-            name: frames,
-            reason: error.to_string(),
-        })
 }

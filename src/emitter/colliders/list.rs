@@ -1,0 +1,81 @@
+//! All colliders, to be asked which are near.
+
+use bevy::{
+    math::{Vec3A, bounding::Aabb3d},
+    prelude::*,
+};
+
+use super::{
+    ParticleCollider,
+    moving::{Collider, ColliderPath, Reach, overlaps},
+};
+
+/// All colliders during a step.
+#[derive(Debug)]
+pub(in crate::emitter) struct Colliders {
+    /// Half-spaces first.
+    list: Vec<Collider>,
+    half_spaces: usize,
+    /// Around all others.
+    bounds: Aabb3d,
+}
+
+impl Default for Colliders {
+    fn default() -> Self {
+        Self {
+            list: Vec::new(),
+            half_spaces: 0,
+            bounds: NOWHERE,
+        }
+    }
+}
+
+/// A box that nothing is in.
+const NOWHERE: Aabb3d = Aabb3d {
+    min: Vec3A::INFINITY,
+    max: Vec3A::NEG_INFINITY,
+};
+
+impl Colliders {
+    /// Lists all as they are during this step.
+    pub(in crate::emitter) fn gather(
+        &mut self,
+        colliders: &mut Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
+    ) {
+        self.list.clear();
+        self.half_spaces = 0;
+        self.bounds = NOWHERE;
+        for (collider, transform, mut path) in colliders {
+            let Some(collider) = Collider::new(collider, transform, &mut path) else {
+                continue;
+            };
+            let reach = collider.reach;
+            self.list.push(collider);
+            match reach {
+                Reach::Below(_) => {
+                    let last = self.list.len() - 1;
+                    self.list.swap(self.half_spaces, last);
+                    self.half_spaces += 1;
+                }
+                Reach::Within(bounds) => {
+                    self.bounds.min = self.bounds.min.min(bounds.min);
+                    self.bounds.max = self.bounds.max.max(bounds.max);
+                }
+            }
+        }
+    }
+
+    pub(in crate::emitter) fn list(&self) -> &[Collider] {
+        &self.list
+    }
+
+    /// Whether a ball of `radius` may touch any on its straight way. Never wrong about those that
+    /// do.
+    #[inline]
+    pub(in crate::emitter) fn any_near(&self, start: Vec3A, end: Vec3A, radius: f32) -> bool {
+        let is_near = |collider: &Collider| collider.is_near(start, end, radius);
+        let (half_spaces, others) = self.list.split_at(self.half_spaces);
+        half_spaces.iter().any(is_near)
+            || overlaps(&self.bounds, start, end, radius) && others.iter().any(is_near)
+    }
+}

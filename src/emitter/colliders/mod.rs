@@ -1,0 +1,131 @@
+//! What particles bounce off.
+
+mod list;
+mod moving;
+
+use bevy::prelude::*;
+
+pub(super) use self::{
+    list::Colliders,
+    moving::{Collider, ColliderPath},
+};
+use crate::range::SettingRange;
+
+/// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
+/// follows its entity: the scale of the transform counts, and a collider that moves or turns takes
+/// particles along. It is made from a shape of Bevy's, or by [`ground`](Self::ground).
+///
+/// Particles touch it with their radius. One that is narrowly wedged between two solids may be pressed
+/// into one of them. Values out of their range are said once in the log and taken as the nearest that
+/// is in range.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_fluid::prelude::*;
+/// # fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>) {
+/// let ball = Sphere::new(0.3);
+/// commands.spawn((
+///     Mesh3d(meshes.add(ball)),
+///     ParticleCollider { restitution: 0.6, ..ball.into() },
+///     Transform::from_xyz(0.0, 1.0, 0.0),
+/// ));
+/// # }
+/// ```
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[require(Transform, ColliderPath)]
+pub struct ParticleCollider {
+    /// What it looks like. Default: the ground.
+    pub shape: ColliderShape,
+    /// Share of the speed, across the surface, that is left after a bounce. Range 0..=1, default 0.2.
+    /// Higher: particles bounce; 0: they stay on it.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
+    pub restitution: f32,
+    /// Force along the surface over force across it, at most (Coulomb's coefficient). Range 0..=1000,
+    /// default 0.2. Higher: particles stop sooner and stay on steeper slopes.
+    #[reflect(@SettingRange::new(0.0, 1e3).logarithmic())]
+    pub friction: f32,
+}
+
+/// The shape of a [`ParticleCollider`], in its entity's space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum ColliderShape {
+    /// All that is below the xz plane.
+    #[default]
+    Ground,
+    /// A ball about the origin. Under a scale that is not the same along all axes, the greatest
+    /// counts.
+    Sphere {
+        /// Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
+        radius: f32,
+    },
+    /// A box about the origin, along the axes.
+    Cuboid {
+        /// Half of its sides. Unit: m, range 0..=1e6 each.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
+        half_size: Vec3,
+    },
+    /// A cylinder along y with half a ball at each end. Of the scales along x and z the greater
+    /// counts for the radius.
+    Capsule {
+        /// Of the cylinder and the balls. Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
+        radius: f32,
+        /// Half of the cylinder's length, the balls left out. Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
+        half_length: f32,
+    },
+}
+
+impl ParticleCollider {
+    /// The default: the ground.
+    pub const DEFAULT: Self = Self {
+        shape: ColliderShape::Ground,
+        restitution: 0.2,
+        friction: 0.2,
+    };
+
+    /// All that is below the entity's xz plane.
+    pub const fn ground() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Default for ParticleCollider {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl From<ColliderShape> for ParticleCollider {
+    fn from(shape: ColliderShape) -> Self {
+        Self {
+            shape,
+            ..Self::DEFAULT
+        }
+    }
+}
+
+impl From<Sphere> for ParticleCollider {
+    fn from(Sphere { radius }: Sphere) -> Self {
+        ColliderShape::Sphere { radius }.into()
+    }
+}
+
+impl From<Cuboid> for ParticleCollider {
+    fn from(Cuboid { half_size }: Cuboid) -> Self {
+        ColliderShape::Cuboid { half_size }.into()
+    }
+}
+
+impl From<Capsule3d> for ParticleCollider {
+    fn from(capsule: Capsule3d) -> Self {
+        ColliderShape::Capsule {
+            radius: capsule.radius,
+            half_length: capsule.half_length,
+        }
+        .into()
+    }
+}

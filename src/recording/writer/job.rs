@@ -1,0 +1,67 @@
+//! One file that is to be written, and the description beside the first.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use bevy::prelude::*;
+
+use super::RecordingWriter;
+use crate::recording::{
+    asset::RecordingSettings,
+    error::RecordingError,
+    frame::{FrameError, ParticleFrame, replace},
+    pattern::FramePattern,
+};
+
+/// One file to be written.
+#[derive(Debug, Default)]
+pub(super) struct Job {
+    pub(super) frame: ParticleFrame,
+    pub(super) path: PathBuf,
+    /// A second file, with the first frame.
+    pub(super) description: Option<(PathBuf, String)>,
+    bytes: Vec<u8>,
+}
+
+impl Job {
+    pub(super) fn run(&mut self) -> Result<(), FrameError> {
+        let failed = |path: &Path| {
+            let name = path.display().to_string();
+            move |error: std::io::Error| FrameError::Write {
+                name,
+                reason: error.to_string(),
+            }
+        };
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder).map_err(failed(folder))?;
+        }
+        self.frame.write_with(&self.path, &mut self.bytes)?;
+        if let Some((path, text)) = self.description.take() {
+            replace(&path, text.as_bytes()).map_err(failed(&path))?;
+        }
+        Ok(())
+    }
+}
+
+/// What the `.fluid.ron` beside the frames holds.
+pub(super) fn description(
+    pattern: &FramePattern,
+    writer: &RecordingWriter,
+    radius: Option<f32>,
+) -> Result<String, RecordingError> {
+    let frames = pattern.to_string();
+    let settings = RecordingSettings {
+        frames: frames[pattern.folder().len()..].into(),
+        rate: writer.rate.into(),
+        radius,
+        ..default()
+    };
+    ron::ser::to_string_pretty(&settings, default())
+        .map(|text| text + "\n")
+        .map_err(|error| RecordingError::Description {
+            name: frames,
+            reason: error.to_string(),
+        })
+}

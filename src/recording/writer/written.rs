@@ -1,0 +1,100 @@
+//! What has been written, and what still waits.
+
+use std::mem;
+
+use bevy::{
+    prelude::*,
+    tasks::{Task, block_on, futures::check_ready},
+};
+
+use super::job::Job;
+use crate::recording::frame::FrameError;
+
+/// What a [`RecordingWriter`](super::RecordingWriter) has written.
+#[derive(Component, Debug, Default)]
+pub struct WrittenFrames {
+    pub(super) pattern: String,
+    /// Recorded time. Unit: s.
+    pub(super) elapsed: f64,
+    pub(super) last: Option<u32>,
+    pub(super) jobs: Vec<Task<(Job, Result<(), FrameError>)>>,
+    /// Their buffers are used again.
+    pub(super) spare: Vec<Job>,
+    pub(super) written: u32,
+    pub(super) dropped: u32,
+    pub(super) error: Option<String>,
+}
+
+impl WrittenFrames {
+    /// How many frames have been written.
+    pub fn written(&self) -> u32 {
+        self.written
+    }
+
+    /// How many frames have been left out because too many waited.
+    pub fn dropped(&self) -> u32 {
+        self.dropped
+    }
+
+    /// How many frames wait to be written.
+    pub fn waiting(&self) -> usize {
+        self.jobs.len()
+    }
+
+    /// Why the recording has ended, if it has.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Waits until everything is written: for the end of a program, which would end the writing
+    /// too.
+    pub fn finish(&mut self) {
+        for task in mem::take(&mut self.jobs) {
+            let (job, result) = block_on(task);
+            self.take_back(job, result);
+        }
+    }
+
+    pub(super) fn collect(&mut self) {
+        let mut at = 0;
+        while let Some(task) = self.jobs.get_mut(at) {
+            if let Some((job, result)) = check_ready(task) {
+                drop(self.jobs.swap_remove(at));
+                self.take_back(job, result);
+            } else {
+                at += 1;
+            }
+        }
+    }
+
+    fn take_back(&mut self, job: Job, result: Result<(), FrameError>) {
+        self.spare.push(job);
+        match result {
+            Ok(()) => self.written += 1,
+            Err(error) => self.fail(&error.to_string()),
+        }
+    }
+
+    pub(super) fn fail(&mut self, error: &str) {
+        if self.error.is_none() {
+            warn!("the recording ends: {error}");
+            self.error = Some(error.into());
+        }
+    }
+
+    pub(super) fn restart(&mut self, pattern: &str) {
+        self.pattern = pattern.into();
+        self.elapsed = 0.0;
+        self.last = None;
+        (self.written, self.dropped) = (0, 0);
+    }
+}
+
+impl Drop for WrittenFrames {
+    fn drop(&mut self) {
+        // What waits is still written where the fluid is despawned.
+        for task in self.jobs.drain(..) {
+            task.detach();
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Other published ways of smoothing, to be compared with.
+
+use bevy::prelude::*;
+
+use super::Window;
+use crate::range::SettingRange;
+
+/// Bilateral smoothing (thesis 3.2, equation 3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct Bilateral {
+    /// Taps to each side of the centre. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
+    pub half_taps: u32,
+    /// How often the filter is repeated. Range 1..=64, default 22.
+    #[reflect(@SettingRange::new(1.0, 64.0).unit("times"))]
+    pub iterations: u32,
+    /// How large the window is. Default 0.5 radii.
+    pub window: Window,
+    /// σ₂ in particle radii. Range 0.5..=4, default 2√2.
+    #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
+    pub range: f32,
+}
+
+impl Bilateral {
+    /// The published taps over a window that follows the particles on screen.
+    pub const DEFAULT: Self = Self {
+        half_taps: 3,
+        iterations: 22,
+        window: Window::Radii(0.5),
+        range: 2.0 * core::f32::consts::SQRT_2,
+    };
+
+    /// As published: 7×7 pixels, 22 times.
+    pub const THESIS: Self = Self {
+        window: Window::Pixels,
+        ..Self::DEFAULT
+    };
+}
+
+impl Default for Bilateral {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// The mean of the splats' normals over a window (Takahashi & Doi).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct NormalAverage {
+    /// Taps to each side of the centre. Range 1..=8, default 4.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
+    pub half_taps: u32,
+    /// How large the window is. Default 0.65 radii.
+    pub window: Window,
+}
+
+impl Default for NormalAverage {
+    fn default() -> Self {
+        Self {
+            half_taps: 4,
+            window: Window::Radii(0.65),
+        }
+    }
+}
+
+/// The narrow-range filter, along rows and columns in turn (Truong & Yuksel 2018).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct NarrowRange {
+    /// Taps to each side of the centre. Range 1..=8, default 6.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
+    pub half_taps: u32,
+    /// How often rows and columns are filtered. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
+    pub iterations: u32,
+    /// How large the window is. Default 1.5 radii.
+    pub window: Window,
+    /// δ, the depth difference that belongs to the surface. Unit: particle radii, range 1..=20,
+    /// default 10 as published.
+    #[reflect(@SettingRange::new(1.0, 20.0).unit("radii"))]
+    pub range: f32,
+}
+
+impl Default for NarrowRange {
+    fn default() -> Self {
+        Self {
+            half_taps: 6,
+            iterations: 3,
+            window: Window::Radii(1.5),
+            range: 10.0,
+        }
+    }
+}
+
+/// Explicit steps of mean curvature flow (van der Laan, Green & Sainz 2009).
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct CurvatureFlow {
+    /// Number of steps. Range 1..=200, default 60.
+    #[reflect(@SettingRange::new(1.0, 200.0).unit("steps"))]
+    pub iterations: u32,
+    /// Time step. Unit: pixels squared, range 0.01..=0.5, default 0.4. Larger: smoother; explicit
+    /// steps ring beyond 0.5.
+    #[reflect(@SettingRange::new(0.01, 0.5).unit("px²"))]
+    pub step: f32,
+    /// Depth differences beyond this are edges. Unit: particle radii, range 0.5..=8, default 3.
+    #[reflect(@SettingRange::new(0.5, 8.0).unit("radii"))]
+    pub range: f32,
+}
+
+impl Default for CurvatureFlow {
+    fn default() -> Self {
+        Self {
+            iterations: 60,
+            step: 0.4,
+            range: 3.0,
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! How rays go through the liquid, and what they reflect.
+
+use bevy::prelude::*;
+
+use crate::range::SettingRange;
+
+/// How many interfaces between liquid and air a ray may cross (or be totally reflected at).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Refractions {
+    /// Nothing is bent: reflection and absorption along the straight line only.
+    Zero,
+    /// Only the first surface bends; absorption as along the straight ray.
+    One,
+    /// Into one body and out of it.
+    Two,
+    /// Into one body, out of it, into the other class (spray behind bulk, bulk behind spray) and
+    /// out of that.
+    #[default]
+    Four,
+}
+
+impl Refractions {
+    /// The number of interfaces.
+    pub const fn count(self) -> u32 {
+        match self {
+            Self::Zero => 0,
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+        }
+    }
+}
+
+/// How the next interface along a ray is found in a depth layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Search {
+    /// The thesis's secant (3.12), halving the distance while a sample is invalid.
+    Secant,
+    /// An expanding bracket, then Anderson–Björck steps; at most eight evaluations.
+    Bracketed {
+        /// Evenly spaced samples taken first, to find the first of several crossings.
+        /// Range 0..=32, default 0. More: fewer wrong crossings at steps in depth.
+        #[reflect(@SettingRange::new(0.0, 32.0).unit("samples").start(0.0))]
+        coarse_samples: u32,
+    },
+}
+
+impl Search {
+    /// The default: bracketed, without coarse samples.
+    pub const BRACKETED: Self = Self::Bracketed { coarse_samples: 0 };
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self::BRACKETED
+    }
+}
+
+/// How much of the light an interface reflects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum Fresnel {
+    /// The dielectric equations for unpolarised light.
+    #[default]
+    Exact,
+    /// Schlick's approximation; inside with the angle outside. Up to 0.06 off for water.
+    Schlick,
+}
