@@ -37,10 +37,13 @@
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
+mod complaints;
+mod emitter;
 mod material;
 mod medium;
 mod particles;
 pub mod rain;
+mod random;
 pub mod render;
 mod schedule;
 mod settings;
@@ -49,6 +52,10 @@ pub mod shape;
 use bevy::prelude::*;
 
 pub use crate::{
+    emitter::{
+        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
+        ParticleCollider, ParticleEmitter,
+    },
     material::{FluidMaterial, MaterialError, Thickness},
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
@@ -65,8 +72,8 @@ pub use crate::{
 /// What most programs need.
 pub mod prelude {
     pub use crate::{
-        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, Rain, RainPlugin,
-        ScreenSpaceFluid, SurfaceKernel, Thickness,
+        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
+        ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,
     };
 }
 
@@ -95,6 +102,7 @@ impl Plugin for FluidPlugin {
         app.add_plugins((
             schedule::plugin,
             particles::plugin,
+            emitter::plugin,
             material::plugin,
             render::FluidRenderPlugin {
                 layer_blending: self.layer_blending,

@@ -1,10 +1,13 @@
 //! Materials that make no sense: what is said, and what is drawn.
 
-use bevy::{ecs::entity::EntityHashMap, prelude::*};
+use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{FluidMaterial, Thickness};
-use crate::medium::MediumError;
+use crate::{
+    complaints::{AboutField, Complaints},
+    medium::MediumError,
+};
 
 const REFRACTIVE_INDICES: [f32; 2] = [0.2, 5.0];
 const ROUGHNESSES: [f32; 2] = [0.03, 1.0];
@@ -101,26 +104,7 @@ impl FluidMaterial {
     }
 }
 
-/// What has been said of whom: the same is not said again.
-#[derive(Default)]
-struct Complaints(EntityHashMap<MaterialError>);
-
-impl Complaints {
-    /// The error of a material, unless it has been said already.
-    fn of(&mut self, entity: Entity, material: &FluidMaterial) -> Option<MaterialError> {
-        let Err(error) = material.validate() else {
-            self.0.remove(&entity);
-            return None;
-        };
-        let before = self.0.insert(entity, error);
-        // By what they name: a number that is none never equals itself, and one that is
-        // animated out of range would be said every frame.
-        let same = before.is_some_and(|before| before.field() == error.field());
-        (!same).then_some(error)
-    }
-}
-
-impl MaterialError {
+impl AboutField for MaterialError {
     fn field(&self) -> &'static str {
         match self {
             Self::Medium(MediumError::Density { field, .. } | MediumError::Color { field, .. }) => {
@@ -138,10 +122,10 @@ fn check_materials(
     mut complaints: Local<Complaints>,
 ) {
     for entity in gone.read() {
-        complaints.0.remove(&entity);
+        complaints.forget(entity);
     }
     for (entity, material) in &changed {
-        if let Some(error) = complaints.of(entity, material) {
+        if let Some(error) = complaints.of(entity, material.validate()) {
             warn!("fluid {entity}: {error}; it is drawn with the nearest value in range");
         }
     }
@@ -207,14 +191,17 @@ mod tests {
         let [a, b] = [1, 2].map(|i| Entity::from_raw_u32(i).unwrap());
         let mut bad = FluidMaterial::WATER;
         bad.medium.absorption_density = f32::NAN;
-        assert!(complaints.of(a, &bad).is_some());
-        assert!(complaints.of(a, &bad).is_none(), "said already");
+        assert!(complaints.of(a, bad.validate()).is_some());
+        assert!(complaints.of(a, bad.validate()).is_none(), "said already");
         bad.medium.absorption_density = -1.0;
-        assert!(complaints.of(a, &bad).is_none(), "of the same field");
-        assert!(complaints.of(b, &bad).is_some(), "another fluid");
+        assert!(
+            complaints.of(a, bad.validate()).is_none(),
+            "of the same field"
+        );
+        assert!(complaints.of(b, bad.validate()).is_some(), "another fluid");
         bad.medium.absorption_density = 1.0;
-        assert!(complaints.of(a, &bad).is_none(), "mended");
+        assert!(complaints.of(a, bad.validate()).is_none(), "mended");
         bad.medium.absorption_density = -1.0;
-        assert!(complaints.of(a, &bad).is_some(), "bad again");
+        assert!(complaints.of(a, bad.validate()).is_some(), "bad again");
     }
 }

@@ -221,7 +221,7 @@ pub fn sample_diameter(rate: f64, low: f64, high: f64, uniform: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rain::random::Random;
+    use crate::random::Random;
 
     /// Gunn and Kinzer as METHOD 7 cites them.
     const CITED: [(f64, f64); 10] = [

@@ -37,7 +37,6 @@ mod clock;
 mod draw;
 pub mod drops;
 pub mod phase;
-mod random;
 mod settings;
 pub mod streaks;
 

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 use super::{
     classes::{BAKED_RATES, CLASSES, Class, DENSITIES},
     drops::{DragLaw, sample_diameter, slope},
-    random::Random,
 };
+use crate::random::Random;
 
 /// Textures per class. Each has its own drops, so that repetition does not show.
 pub const VARIANTS: usize = 4;

@@ -1,6 +1,6 @@
 //! Random numbers that are the same on every machine.
 
-/// `SplitMix64` (Steele, Lea and Flood 2014): enough for where drops are.
+/// `SplitMix64` (Steele, Lea and Flood 2014): enough for where drops and particles are.
 #[derive(Clone, Debug)]
 pub(crate) struct Random(u64);
 

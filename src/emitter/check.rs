@@ -1,0 +1,263 @@
+//! Emitters and colliders that make no sense: what is said, and what is done.
+
+use core::f32::consts::PI;
+
+use bevy::prelude::*;
+use thiserror::Error;
+
+use super::{ColliderShape, EmitterBounds, ParticleCollider, ParticleEmitter};
+use crate::complaints::{AboutField, Complaints};
+
+/// More particles than this are no use to anyone, and would take gigabytes.
+const MAX_PARTICLES: u32 = 10_000_000;
+
+/// Why an emitter or a collider makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum EmitterError {
+    /// A field is out of its range.
+    #[error("`{component}::{field}` is {value}; it must be from {min} to {max}")]
+    Range {
+        /// `ParticleEmitter` or `ParticleCollider`.
+        component: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// Smallest value allowed.
+        min: f32,
+        /// Largest value allowed.
+        max: f32,
+    },
+    /// A direction that leads nowhere.
+    #[error("`ParticleEmitter::direction` is {0}; it must be finite and not zero")]
+    Direction(Vec3),
+    /// More particles than there can be.
+    #[error("`ParticleEmitter::capacity` is {0}; it must be from 0 to {MAX_PARTICLES}")]
+    Capacity(u32),
+    /// A box that nothing is in.
+    #[error("`ParticleEmitter::bounds` are from {} to {}; min must not exceed max", .0.min, .0.max)]
+    Bounds(EmitterBounds),
+    /// A transform without an inverse: there is no place for particles in the entity's space.
+    #[error("its `GlobalTransform` has no inverse")]
+    Transform,
+}
+
+impl AboutField for EmitterError {
+    fn field(&self) -> &'static str {
+        match self {
+            Self::Range { field, .. } => field,
+            Self::Direction(_) => "direction",
+            Self::Capacity(_) => "capacity",
+            Self::Bounds(_) => "bounds",
+            Self::Transform => "transform",
+        }
+    }
+}
+
+/// A number, the range that it must be in, and what stands in for one that is none.
+struct Field<'a> {
+    name: &'static str,
+    value: &'a mut f32,
+    min: f32,
+    max: f32,
+    absent: f32,
+}
+
+impl Field<'_> {
+    fn check(&self, component: &'static str) -> Result<(), EmitterError> {
+        // NaN is in no range.
+        if (self.min..=self.max).contains(self.value) {
+            return Ok(());
+        }
+        Err(EmitterError::Range {
+            component,
+            field: self.name,
+            value: *self.value,
+            min: self.min,
+            max: self.max,
+        })
+    }
+
+    fn clamp(&mut self) {
+        *self.value = if self.value.is_nan() {
+            self.absent
+        } else {
+            self.value.clamp(self.min, self.max)
+        };
+    }
+}
+
+fn field<'a>(
+    name: &'static str,
+    value: &'a mut f32,
+    [min, max]: [f32; 2],
+    absent: f32,
+) -> Field<'a> {
+    Field {
+        name,
+        value,
+        min,
+        max,
+        absent,
+    }
+}
+
+impl ParticleEmitter {
+    fn fields(&mut self) -> [Field<'_>; 11] {
+        let absent = Self::DEFAULT;
+        let [x, y, z] = self.gravity.as_mut();
+        [
+            field("rate", &mut self.rate, [0.0, 1e7], absent.rate),
+            field("speed", &mut self.speed, [0.0, 1e3], absent.speed),
+            field("spread", &mut self.spread, [0.0, PI], absent.spread),
+            field("nozzle", &mut self.nozzle, [0.0, 1e3], absent.nozzle),
+            field("jitter", &mut self.jitter, [0.0, 1e3], absent.jitter),
+            field(
+                "particle_radius",
+                &mut self.particle_radius,
+                [1e-6, 1e6],
+                absent.particle_radius,
+            ),
+            field(
+                "lifetime",
+                &mut self.lifetime,
+                [0.0, f32::INFINITY],
+                absent.lifetime,
+            ),
+            field("gravity.x", x, [-1e3, 1e3], absent.gravity.x),
+            field("gravity.y", y, [-1e3, 1e3], absent.gravity.y),
+            field("gravity.z", z, [-1e3, 1e3], absent.gravity.z),
+            field("drag", &mut self.drag, [0.0, 1e3], absent.drag),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), EmitterError> {
+        for field in { *self }.fields() {
+            field.check("ParticleEmitter")?;
+        }
+        if !self.has_direction() {
+            return Err(EmitterError::Direction(self.direction));
+        }
+        if self.capacity > MAX_PARTICLES {
+            return Err(EmitterError::Capacity(self.capacity));
+        }
+        match self.bounds {
+            // Not so for NaN either.
+            Some(bounds) if !bounds.min.cmple(bounds.max).all() => {
+                Err(EmitterError::Bounds(bounds))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The nearest settings that make sense: what is out of range is moved to its end, what is no
+    /// number gives way to the default, bounds that nothing is in to none.
+    pub fn clamped(&self) -> Self {
+        let mut clamped = *self;
+        clamped.fields().iter_mut().for_each(Field::clamp);
+        if !self.has_direction() {
+            clamped.direction = Self::DEFAULT.direction;
+        }
+        clamped.capacity = self.capacity.min(MAX_PARTICLES);
+        clamped.bounds = self
+            .bounds
+            .filter(|bounds| bounds.min.cmple(bounds.max).all());
+        clamped
+    }
+
+    fn has_direction(&self) -> bool {
+        self.direction.try_normalize().is_some()
+    }
+}
+
+impl ParticleCollider {
+    fn with_fields<T>(&mut self, f: impl FnOnce(&mut [Field<'_>]) -> T) -> T {
+        const LENGTHS: [f32; 2] = [0.0, 1e6];
+        let absent = Self::DEFAULT;
+        let restitution = field(
+            "restitution",
+            &mut self.restitution,
+            [0.0, 1.0],
+            absent.restitution,
+        );
+        let friction = field("friction", &mut self.friction, [0.0, 1e3], absent.friction);
+        match &mut self.shape {
+            ColliderShape::Ground => f(&mut [restitution, friction]),
+            ColliderShape::Sphere { radius } => f(&mut [
+                restitution,
+                friction,
+                field("shape.radius", radius, LENGTHS, 0.0),
+            ]),
+            ColliderShape::Cuboid { half_size } => {
+                let [x, y, z] = half_size.as_mut();
+                f(&mut [
+                    restitution,
+                    friction,
+                    field("shape.half_size.x", x, LENGTHS, 0.0),
+                    field("shape.half_size.y", y, LENGTHS, 0.0),
+                    field("shape.half_size.z", z, LENGTHS, 0.0),
+                ])
+            }
+            ColliderShape::Capsule {
+                radius,
+                half_length,
+            } => f(&mut [
+                restitution,
+                friction,
+                field("shape.radius", radius, LENGTHS, 0.0),
+                field("shape.half_length", half_length, LENGTHS, 0.0),
+            ]),
+        }
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), EmitterError> {
+        { *self }.with_fields(|fields| {
+            fields
+                .iter()
+                .try_for_each(|field| field.check("ParticleCollider"))
+        })
+    }
+
+    /// The nearest collider that makes sense: what is out of range is moved to its end, what is no
+    /// number gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let mut clamped = *self;
+        clamped.with_fields(|fields| fields.iter_mut().for_each(Field::clamp));
+        clamped
+    }
+}
+
+pub(super) fn check_emitters(
+    emitters: Query<(Entity, &ParticleEmitter), Changed<ParticleEmitter>>,
+    colliders: Query<(Entity, &ParticleCollider), Changed<ParticleCollider>>,
+    mut gone_emitters: RemovedComponents<ParticleEmitter>,
+    mut gone_colliders: RemovedComponents<ParticleCollider>,
+    mut of_emitters: Local<Complaints>,
+    mut of_colliders: Local<Complaints>,
+) {
+    for entity in gone_emitters.read() {
+        of_emitters.forget(entity);
+    }
+    for entity in gone_colliders.read() {
+        of_colliders.forget(entity);
+    }
+    for (entity, emitter) in &emitters {
+        if let Some(error) = of_emitters.of(entity, emitter.validate()) {
+            warn!("emitter {entity}: {error}; it goes on with the nearest value in range");
+        }
+    }
+    for (entity, collider) in &colliders {
+        if let Some(error) = of_colliders.of(entity, collider.validate()) {
+            warn!("collider {entity}: {error}; it goes on with the nearest value in range");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Which particles an emitter lets out in a step, whatever moves them afterwards.
+
+use core::f32::consts::TAU;
+
+use bevy::prelude::*;
+
+use super::ParticleEmitter;
+use crate::random::Random;
+
+/// A particle that comes into being within a step. In the world's space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Birth {
+    /// Where it is born. Unit: m.
+    pub(crate) position: Vec3,
+    /// Its velocity at birth. Unit: m/s.
+    pub(crate) velocity: Vec3,
+    /// How old it is at the end of the step, and so for how long it has yet to be moved within it.
+    /// Unit: s.
+    pub(crate) age: f32,
+}
+
+/// How far an emitter has come: what lies between one step and the next.
+///
+/// The k-th particle is born at the same time, with the same random numbers, however long the steps
+/// are. It knows nothing of what becomes of the particles.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct Emission {
+    /// The part of a particle that the rate has already yielded, 0..1.
+    owed: f64,
+    /// How many have been born, and the number of the next one.
+    born: u64,
+    /// Where the emitter was at the end of the last step.
+    last: Option<Pose>,
+}
+
+impl Emission {
+    /// Calls `birth` for each particle of a step of `seconds` that ends with the emitter at `to`,
+    /// oldest first, those of a burst last. It is to be called in every frame, so that it knows the
+    /// emitter's way; nothing is born while no time passes.
+    ///
+    /// `emitter` is what [`ParticleEmitter::take`] gives. No more are born than its capacity: of
+    /// more, the last ones.
+    pub(crate) fn emit(
+        &mut self,
+        emitter: &ParticleEmitter,
+        to: &GlobalTransform,
+        seconds: f64,
+        mut birth: impl FnMut(Birth),
+    ) {
+        let to = Pose::from(to);
+        let from = self.last.replace(to).unwrap_or(to);
+        if seconds <= 0.0 {
+            return;
+        }
+        let nozzle = Nozzle::new(emitter);
+        let rate = if emitter.enabled {
+            f64::from(emitter.rate)
+        } else {
+            0.0
+        };
+        let owed = self.owed;
+        let total = owed + rate * seconds;
+        let steady = total as u64;
+        let all = steady + u64::from(emitter.queued);
+        for number in all.saturating_sub(u64::from(emitter.capacity))..all {
+            // Those of a burst are born where the emitter is now.
+            let time = if number < steady {
+                (((number + 1) as f64 - owed) / rate).clamp(0.0, seconds)
+            } else {
+                seconds
+            };
+            let pose = from.towards(&to, (time / seconds) as f32);
+            let (position, velocity) = nozzle.particle(&pose, self.born.wrapping_add(number));
+            birth(Birth {
+                position,
+                velocity,
+                age: (seconds - time) as f32,
+            });
+        }
+        self.born = self.born.wrapping_add(all);
+        self.owed = total.fract();
+    }
+}
+
+/// An emitter's place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pose {
+    scale: Vec3,
+    rotation: Quat,
+    translation: Vec3,
+}
+
+impl From<&GlobalTransform> for Pose {
+    fn from(transform: &GlobalTransform) -> Self {
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        Self {
+            scale,
+            rotation,
+            translation,
+        }
+    }
+}
+
+impl Pose {
+    /// A part of the way from here to there.
+    fn towards(&self, to: &Self, part: f32) -> Self {
+        if self == to {
+            return *to;
+        }
+        Self {
+            scale: self.scale.lerp(to.scale, part),
+            rotation: self.rotation.slerp(to.rotation, part),
+            translation: self.translation.lerp(to.translation, part),
+        }
+    }
+
+    fn vector(&self, vector: Vec3) -> Vec3 {
+        self.rotation * (self.scale * vector)
+    }
+}
+
+/// What particles come out of, in the emitter's space.
+struct Nozzle {
+    /// Across the direction, across it again, and along it.
+    axes: Mat3,
+    radius: f32,
+    /// One minus the cosine of the cone's half angle.
+    opening: f32,
+    speed: f32,
+    jitter: f32,
+    seed: u64,
+}
+
+impl Nozzle {
+    fn new(emitter: &ParticleEmitter) -> Self {
+        let direction = emitter.direction.normalize_or(Vec3::Y);
+        let (side, other) = direction.any_orthonormal_pair();
+        Self {
+            axes: Mat3::from_cols(side, other, direction),
+            radius: emitter.nozzle,
+            // As cos loses the small angles of jets.
+            opening: 2.0 * (0.5 * emitter.spread).sin().powi(2),
+            speed: emitter.speed,
+            jitter: emitter.jitter,
+            seed: emitter.seed,
+        }
+    }
+
+    /// The place and the velocity of the particle of this number.
+    fn particle(&self, pose: &Pose, number: u64) -> (Vec3, Vec3) {
+        let mut random = Random::sequence(self.seed, number);
+        let mut next = || random.next_f64() as f32;
+        let offset = Vec2::from_angle(TAU * next()) * (self.radius * next().sqrt());
+        let place = self.axes * offset.extend(0.0);
+        let direction = self.axes * within_cap(self.opening, next(), next());
+        let jitter = within_cap(2.0, next(), next()) * (self.jitter * next().cbrt());
+        let direction = pose.vector(direction).normalize_or_zero();
+        (
+            pose.translation + pose.vector(place),
+            direction * self.speed + jitter,
+        )
+    }
+}
+
+/// A direction evenly from the cap around +z, as high as this, of the unit sphere, by two numbers
+/// from 0 to 1.
+fn within_cap(height: f32, u: f32, v: f32) -> Vec3 {
+    let down = height * u;
+    // sin² = 1 − (1 − down)².
+    let across = (down * (2.0 - down)).max(0.0).sqrt();
+    (Vec2::from_angle(TAU * v) * across).extend(1.0 - down)
+}

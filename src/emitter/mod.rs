@@ -1,0 +1,231 @@
+//! Emitters: particles that come out of a nozzle, fly, bounce and vanish.
+//!
+//! [`FluidSystems::Emit`] adds the births of a step to [`EmittedParticles`]; [`FluidSystems::Simulate`]
+//! moves all and hands them to the entity's [`FluidParticles`].
+
+mod check;
+mod colliders;
+mod distance;
+mod emission;
+mod motion;
+mod particles;
+
+use core::f32::consts::PI;
+
+use bevy::prelude::*;
+
+pub use self::{
+    check::EmitterError,
+    colliders::{ColliderShape, ParticleCollider},
+    particles::EmittedParticles,
+};
+
+use self::emission::Emission;
+use crate::{particles::FluidParticles, schedule::FluidSystems};
+
+/// Lets particles out of its entity, which is a fluid of them.
+///
+/// New particles come from where the entity is now, spread along its way since the last frame; those
+/// that are out stay in the world when it moves on. They fly freely, bounce off every
+/// [`ParticleCollider`], and vanish by age, by [`bounds`](Self::bounds), or, the oldest first, when
+/// they are more than the [`capacity`](Self::capacity). It owns the positions and the radius of the
+/// [`FluidParticles`] beside it.
+///
+/// Equal steps give equal particles, bit for bit, on any number of threads. A step is never longer
+/// than 0.25 s. A stopped emitter without particles costs nothing. Values out of their range are said
+/// once in the log and taken as the nearest that is in range.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_fluid::prelude::*;
+/// fn setup(mut commands: Commands) {
+///     commands.spawn((
+///         ParticleEmitter::fountain(2000.0, 5.0),
+///         Transform::from_xyz(0.0, 0.3, 0.0),
+///     ));
+///     commands.spawn(ParticleCollider::ground());
+/// }
+/// ```
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[require(FluidParticles, EmittedParticles, Emission)]
+pub struct ParticleEmitter {
+    /// Whether particles come out. Default true. Those that are out fly on without it.
+    pub enabled: bool,
+    /// How many particles come out, evenly in time. Unit: 1/s, range 0..=10,000,000, default 1000.
+    pub rate: f32,
+    /// How fast they come out. Unit: m/s, range 0..=1000, default 4, which rises 0.8 m.
+    pub speed: f32,
+    /// Where they come out to, in the entity's space. Its length does not matter. Default: up, +y.
+    pub direction: Vec3,
+    /// Half the angle of the cone that they fill, evenly. Unit: rad, range 0..=π, default 0.05.
+    /// Higher: from a jet to a spray, a half-space (π/2) and all around (π).
+    pub spread: f32,
+    /// Radius of the disc that they come from, across the direction, in the entity's space.
+    /// Unit: m, range 0..=1000, default 0.05. 0: a point.
+    pub nozzle: f32,
+    /// How unsteady they are: a random velocity in a ball of this radius is added to each. Unit: m/s,
+    /// range 0..=1000, default 0.1. Higher: the jet breaks up sooner.
+    pub jitter: f32,
+    /// Radius of every particle, in the entity's space: [`FluidParticles::radius`]. Unit: m, range
+    /// 1e-6..=1e6, default 0.02.
+    pub particle_radius: f32,
+    /// Age at which they vanish. Unit: s, from 0, default 3. Infinite: never.
+    pub lifetime: f32,
+    /// What pulls at them, in the world. Unit: m/s², range −1000..=1000 each, default −9.81 along y.
+    pub gravity: Vec3,
+    /// Share of their velocity that the air takes. Unit: 1/s, range 0..=1000, default 0. Higher:
+    /// they slow down sooner, and fall at gravity / drag in the end.
+    pub drag: f32,
+    /// Box in the entity's space beyond which they vanish. Default: none.
+    pub bounds: Option<EmitterBounds>,
+    /// How many there are at most; the oldest make room for new ones. Range 0..=10,000,000, default
+    /// 100,000.
+    pub capacity: u32,
+    /// Other seeds, other particles. Default 0.
+    pub seed: u64,
+    /// Particles that come out at once in the next step; then it is 0 again. Default 0. See
+    /// [`burst`](Self::burst).
+    pub queued: u32,
+}
+
+/// A box, in the space of an emitter's entity.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Clone, PartialEq)]
+pub struct EmitterBounds {
+    /// Its lower corner. Unit: m.
+    pub min: Vec3,
+    /// Its upper corner, nowhere below the other. Unit: m.
+    pub max: Vec3,
+}
+
+/// Stands beside a [`ParticleEmitter`] whose particles something else moves: they do not come into
+/// being by [`FluidSystems::Emit`], and [`FluidSystems::Simulate`] leaves [`FluidParticles`] alone.
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component, Default, Clone)]
+pub struct ExternalMotion;
+
+impl ParticleEmitter {
+    /// The default: a thin jet upwards.
+    pub const DEFAULT: Self = Self {
+        enabled: true,
+        rate: 1000.0,
+        speed: 4.0,
+        direction: Vec3::Y,
+        spread: 0.05,
+        nozzle: 0.05,
+        jitter: 0.1,
+        particle_radius: 0.02,
+        lifetime: 3.0,
+        gravity: Vec3::new(0.0, -9.81, 0.0),
+        drag: 0.0,
+        bounds: None,
+        capacity: 100_000,
+        seed: 0,
+        queued: 0,
+    };
+
+    /// A narrow jet along the entity's forward direction (−z), as `Transform::looking_at` aims it:
+    /// so many particles per second, so fast (m/s).
+    pub const fn jet(rate: f32, speed: f32) -> Self {
+        Self {
+            rate,
+            speed,
+            direction: Vec3::NEG_Z,
+            spread: 0.02,
+            jitter: 0.015 * speed,
+            ..Self::DEFAULT
+        }
+    }
+
+    /// A jet upwards that opens and falls back: so many particles per second, so fast (m/s).
+    pub const fn fountain(rate: f32, speed: f32) -> Self {
+        Self {
+            rate,
+            speed,
+            spread: 0.15,
+            nozzle: 0.03,
+            jitter: 0.03 * speed,
+            ..Self::DEFAULT
+        }
+    }
+
+    /// Drops that fall from a wide disc of some radius (m): so many per second.
+    pub const fn shower(rate: f32, nozzle: f32) -> Self {
+        Self {
+            rate,
+            speed: 2.0,
+            direction: Vec3::NEG_Y,
+            spread: 0.0,
+            nozzle,
+            ..Self::DEFAULT
+        }
+    }
+
+    /// Nothing by itself: what [`burst`](Self::burst) lets out flies apart all around, at this speed
+    /// (m/s).
+    pub const fn bursts(speed: f32) -> Self {
+        Self {
+            rate: 0.0,
+            speed,
+            spread: PI,
+            jitter: 0.3 * speed,
+            ..Self::DEFAULT
+        }
+    }
+
+    /// Lets out this many particles at once in the next step, whether or not it is enabled. What is
+    /// asked for before then adds up.
+    pub fn burst(&mut self, count: u32) {
+        self.queued = self.queued.saturating_add(count);
+    }
+
+    /// Lets particles come out.
+    pub fn start(&mut self) {
+        self.enabled = true;
+    }
+
+    /// Lets no more come out.
+    pub fn stop(&mut self) {
+        self.enabled = false;
+    }
+
+    /// These settings within their ranges, to emit from in a step of `seconds`. If any time passes,
+    /// the queue is emptied.
+    pub(crate) fn take(emitter: &mut Mut<Self>, seconds: f64) -> Self {
+        let taken = emitter.clamped();
+        if emitter.queued > 0 && seconds > 0.0 {
+            // No setting has changed.
+            emitter.bypass_change_detection().queued = 0;
+        }
+        taken
+    }
+}
+
+impl Default for ParticleEmitter {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// The longest step that particles take. Unit: s.
+const LONGEST_STEP: f64 = 0.25;
+
+/// How much time passes for particles in this frame. Unit: s.
+pub(crate) fn step(time: &Time) -> f64 {
+    time.delta_secs_f64().min(LONGEST_STEP)
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.register_type::<ParticleEmitter>().add_systems(
+        PostUpdate,
+        (
+            (check::check_emitters, particles::emit)
+                .chain()
+                .in_set(FluidSystems::Emit),
+            particles::simulate.in_set(FluidSystems::Simulate),
+        )
+            .chain()
+            .after(TransformSystems::Propagate),
+    );
+}

@@ -1,0 +1,273 @@
+//! The particles of an emitter, and the systems that let them out and move them.
+
+use bevy::{math::Affine3A, prelude::*};
+use rayon::prelude::*;
+
+use super::{
+    EmitterBounds, EmitterError, ExternalMotion, ParticleCollider, ParticleEmitter,
+    colliders::{Collider, ColliderPath, gather},
+    emission::{Birth, Emission},
+    motion::{Forces, Step},
+    step,
+};
+use crate::{complaints::Complaints, particles::FluidParticles};
+
+/// Particles that one task moves.
+const CHUNK: usize = 4096;
+/// Beyond this there are no particles. Unit: m.
+const EVERYWHERE: EmitterBounds = EmitterBounds {
+    min: Vec3::splat(-1e30),
+    max: Vec3::splat(1e30),
+};
+/// The age of particles that are to vanish.
+const DEAD: f32 = f32::INFINITY;
+
+/// The particles that an emitter has let out, oldest first, in the world's space. Beside
+/// [`ExternalMotion`] there are none.
+#[derive(Component, Clone, Debug, Default)]
+pub struct EmittedParticles {
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+    /// Those born in this step are less than 0 old at its begin.
+    ages: Vec<f32>,
+    /// The transform that [`FluidParticles`] has been written with.
+    written: Option<Affine3A>,
+}
+
+impl EmittedParticles {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Their places. Unit: m.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Their velocities. Unit: m/s.
+    pub fn velocities(&self) -> &[Vec3] {
+        &self.velocities
+    }
+
+    /// Their ages. Unit: s.
+    pub fn ages(&self) -> &[f32] {
+        &self.ages
+    }
+
+    fn clear(&mut self) {
+        self.positions.clear();
+        self.velocities.clear();
+        self.ages.clear();
+    }
+
+    /// Lets the oldest vanish in this step, if there are more than `capacity`.
+    fn keep_newest(&mut self, capacity: usize) {
+        let surplus = self.len().saturating_sub(capacity);
+        self.ages[..surplus].fill(DEAD);
+    }
+
+    /// Moves all by a step, writes them in the emitter's space to `local`, and lets those vanish
+    /// that are too old or out of bounds.
+    fn advance(
+        &mut self,
+        step: &Step,
+        emitter: &ParticleEmitter,
+        local_from_world: &Affine3A,
+        local: &mut Vec<Vec3>,
+    ) {
+        local.resize(self.len(), Vec3::ZERO);
+        let chunk = Chunk {
+            step,
+            lifetime: emitter.lifetime,
+            bounds: emitter.bounds.unwrap_or(EVERYWHERE),
+            local_from_world,
+        };
+        let (positions, velocities, ages) =
+            (&mut self.positions, &mut self.velocities, &mut self.ages);
+        let any_dead = if positions.len() <= CHUNK {
+            chunk.advance(positions, velocities, ages, local)
+        } else {
+            positions
+                .par_chunks_mut(CHUNK)
+                .zip(velocities.par_chunks_mut(CHUNK))
+                .zip(ages.par_chunks_mut(CHUNK))
+                .zip(local.par_chunks_mut(CHUNK))
+                .map(|(((positions, velocities), ages), local)| {
+                    chunk.advance(positions, velocities, ages, local)
+                })
+                .reduce(|| false, |a, b| a | b)
+        };
+        if any_dead {
+            self.bury(local);
+        }
+    }
+
+    /// Closes the gaps of the dead; the others stay in order.
+    fn bury(&mut self, local: &mut Vec<Vec3>) {
+        let Some(first) = self.ages.iter().position(|&age| age == DEAD) else {
+            return;
+        };
+        let mut kept = first;
+        for i in first + 1..self.ages.len() {
+            if self.ages[i] < DEAD {
+                self.positions[kept] = self.positions[i];
+                self.velocities[kept] = self.velocities[i];
+                self.ages[kept] = self.ages[i];
+                local[kept] = local[i];
+                kept += 1;
+            }
+        }
+        self.positions.truncate(kept);
+        self.velocities.truncate(kept);
+        self.ages.truncate(kept);
+        local.truncate(kept);
+    }
+}
+
+/// What is done to a part of the particles, by one thread.
+struct Chunk<'a> {
+    step: &'a Step<'a>,
+    lifetime: f32,
+    bounds: EmitterBounds,
+    local_from_world: &'a Affine3A,
+}
+
+impl Chunk<'_> {
+    /// Returns whether any are to vanish.
+    fn advance(
+        &self,
+        positions: &mut [Vec3],
+        velocities: &mut [Vec3],
+        ages: &mut [f32],
+        local: &mut [Vec3],
+    ) -> bool {
+        let step = self.step;
+        let whole = step.forces.over(step.seconds);
+        let mut any_dead = false;
+        for (((position, velocity), age), local) in
+            positions.iter_mut().zip(velocities).zip(ages).zip(local)
+        {
+            let is_new = *age < 0.0;
+            *age += step.seconds;
+            if *age >= self.lifetime {
+                *age = DEAD;
+                any_dead = true;
+                continue;
+            }
+            if is_new {
+                let flight = step.forces.over(*age);
+                step.advance(position, velocity, &flight, *age);
+            } else {
+                step.advance(position, velocity, &whole, step.seconds);
+            }
+            *local = self.local_from_world.transform_point3(*position);
+            // Neither is what is not a number.
+            let is_within =
+                local.cmpge(self.bounds.min).all() && local.cmple(self.bounds.max).all();
+            if !is_within {
+                *age = DEAD;
+                any_dead = true;
+            }
+        }
+        any_dead
+    }
+}
+
+/// Lets particles out.
+pub(super) fn emit(
+    mut emitters: Query<
+        (
+            Mut<ParticleEmitter>,
+            &GlobalTransform,
+            &mut Emission,
+            &mut EmittedParticles,
+        ),
+        Without<ExternalMotion>,
+    >,
+    time: Res<Time>,
+) {
+    let seconds = step(&time);
+    for (mut emitter, transform, mut emission, mut particles) in &mut emitters {
+        let settings = ParticleEmitter::take(&mut emitter, seconds);
+        emission.emit(&settings, transform, seconds, |birth: Birth| {
+            particles.positions.push(birth.position);
+            particles.velocities.push(birth.velocity);
+            particles.ages.push(birth.age - seconds as f32);
+        });
+        if seconds > 0.0 {
+            particles.keep_newest(settings.capacity as usize);
+        }
+    }
+}
+
+/// Moves all particles.
+pub(super) fn simulate(
+    mut emitters: Query<
+        (
+            Entity,
+            &ParticleEmitter,
+            &GlobalTransform,
+            &mut EmittedParticles,
+            &mut FluidParticles,
+        ),
+        Without<ExternalMotion>,
+    >,
+    mut colliders: Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
+    mut list: Local<Vec<Collider>>,
+    mut complaints: Local<Complaints>,
+    time: Res<Time>,
+) {
+    let seconds = step(&time) as f32;
+    gather(&mut colliders, &mut list);
+    for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
+        let emitter = emitter.clamped();
+        if fluid.radius != emitter.particle_radius {
+            fluid.radius = emitter.particle_radius;
+        }
+        let world_from_local = transform.affine();
+        let is_moved = particles.written != Some(world_from_local);
+        if particles.is_empty() && fluid.positions.is_empty() || seconds == 0.0 && !is_moved {
+            continue;
+        }
+        let local_from_world = world_from_local.inverse();
+        let is_sound = local_from_world.is_finite();
+        let checked = is_sound.then_some(()).ok_or(EmitterError::Transform);
+        if let Some(error) = complaints.of(entity, checked) {
+            warn!("emitter {entity}: {error}; its particles vanish");
+        }
+        particles.written = Some(world_from_local);
+        let local = &mut fluid.positions;
+        if !is_sound {
+            particles.clear();
+            local.clear();
+            continue;
+        }
+        if seconds == 0.0 {
+            local.clear();
+            local.extend(
+                particles
+                    .positions
+                    .iter()
+                    .map(|&place| local_from_world.transform_point3(place)),
+            );
+            continue;
+        }
+        let scale = world_from_local.matrix3.determinant().abs().cbrt();
+        let step = Step {
+            forces: Forces {
+                gravity: emitter.gravity,
+                drag: emitter.drag,
+            },
+            seconds,
+            colliders: &list,
+            radius: emitter.particle_radius * scale,
+        };
+        particles.advance(&step, &emitter, &local_from_world, local);
+    }
+}
