@@ -45,6 +45,8 @@ mod particles;
 pub mod rain;
 mod random;
 pub mod render;
+#[cfg(feature = "salva")]
+pub mod salva;
 mod schedule;
 mod settings;
 pub mod shape;
@@ -71,6 +73,11 @@ pub use crate::{
 
 /// What most programs need.
 pub mod prelude {
+    #[cfg(feature = "salva")]
+    pub use crate::salva::{
+        SalvaBody, SalvaBoundary, SalvaFluid, SalvaMode, SalvaPlugin, SalvaSettings, SalvaShape,
+        SalvaStatus,
+    };
     pub use crate::{
         FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
         ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,

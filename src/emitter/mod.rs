@@ -20,7 +20,7 @@ pub use self::{
     particles::EmittedParticles,
 };
 
-use self::emission::Emission;
+pub(crate) use self::emission::Emission;
 use crate::{particles::FluidParticles, schedule::FluidSystems};
 
 /// Lets particles out of its entity, which is a fluid of them.

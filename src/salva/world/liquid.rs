@@ -1,5 +1,7 @@
 //! One fluid in salva's world, with names for its particles.
 
+use std::collections::HashMap;
+
 use bevy::prelude::*;
 use salva3d::{
     LiquidWorld,
@@ -9,8 +11,9 @@ use salva3d::{
 };
 
 use super::{
-    convert::{LiquidVector, liquid},
+    convert::{LiquidVector, from_liquid, liquid},
     forces::Friction,
+    sampling::neighbors,
 };
 
 /// What a fluid is made of.
@@ -38,12 +41,39 @@ pub(crate) struct Newborn {
     pub(crate) velocities: Vec<Vec3>,
 }
 
+/// Which particles of a fluid may stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// s.
+    pub(crate) lifetime: f32,
+    /// The oldest make room.
+    pub(crate) capacity: usize,
+    /// Into a space in which they stay between two corners.
+    pub(crate) bounds: Option<(Mat4, [Vec3; 2])>,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            lifetime: f32::INFINITY,
+            capacity: usize::MAX,
+            bounds: None,
+        }
+    }
+}
+
+/// How far a particle that is added keeps from others, in diameters.
+const ELBOW_ROOM: f32 = 0.8;
+
 /// A fluid. Its particles are salva's, in the same order.
 pub(crate) struct Liquid {
     pub(crate) handle: FluidHandle,
     /// Ascending: particles are added at the end and removed in order.
     pub(crate) ids: Vec<u32>,
     next_id: u32,
+    /// When they came in, s of simulated time.
+    pub(crate) born: Vec<f64>,
+    pub(crate) limits: Limits,
     /// Whether particles have not been looked at yet: those within solids are taken out.
     pub(crate) is_fresh: bool,
 }
@@ -80,6 +110,8 @@ impl Liquid {
             handle: world.add_fluid(fluid),
             ids: Vec::new(),
             next_id: 0,
+            born: Vec::new(),
+            limits: Limits::default(),
             is_fresh: false,
         }
     }
@@ -90,8 +122,48 @@ impl Liquid {
         }
     }
 
+    /// Adds those that have room beside the others: a nozzle lets out no more than fits through.
+    pub(crate) fn squeeze_in(
+        &mut self,
+        world: &mut LiquidWorld,
+        newborn: Newborn,
+        now: f64,
+    ) -> usize {
+        let room = ELBOW_ROOM * 2.0 * world.particle_radius();
+        let Some(fluid) = world.fluids().get(self.handle) else {
+            return 0;
+        };
+        let new = newborn.positions.iter();
+        let low = new.clone().copied().fold(Vec3::INFINITY, Vec3::min) - room;
+        let high = new.copied().fold(Vec3::NEG_INFINITY, Vec3::max) + room;
+        let cell = |place: Vec3| (place / room).floor().as_ivec3();
+        let mut taken: HashMap<IVec3, Vec<Vec3>> = HashMap::new();
+        for place in fluid.positions.iter().map(from_liquid) {
+            if place.cmpge(low).all() && place.cmple(high).all() {
+                taken.entry(cell(place)).or_default().push(place);
+            }
+        }
+        let mut has_room = |place: Vec3| {
+            let has_room = neighbors(cell(place))
+                .filter_map(|cell| taken.get(&cell))
+                .flatten()
+                .all(|other| other.distance_squared(place) >= room * room);
+            if has_room {
+                taken.entry(cell(place)).or_default().push(place);
+            }
+            has_room
+        };
+        let particles = newborn.positions.into_iter().zip(newborn.velocities);
+        let (positions, velocities) = particles.filter(|(place, _)| has_room(*place)).unzip();
+        let newborn = Newborn {
+            positions,
+            velocities,
+        };
+        self.add(world, &newborn, now)
+    }
+
     /// Adds what is finite, and tells how many were not.
-    pub(crate) fn add(&mut self, world: &mut LiquidWorld, newborn: &Newborn) -> usize {
+    pub(crate) fn add(&mut self, world: &mut LiquidWorld, newborn: &Newborn, now: f64) -> usize {
         let volume = particle_volume(world.particle_radius());
         let Some(fluid) = world.fluids_mut().get_mut(self.handle) else {
             return 0;
@@ -114,9 +186,9 @@ impl Liquid {
         fluid.volumes[self.ids.len()..].fill(volume);
         while self.ids.len() < count {
             self.ids.push(self.next_id);
-            self.next_id += 1;
+            self.born.push(now);
+            self.next_id = self.next_id.wrapping_add(1);
         }
-        self.is_fresh = true;
         newborn.positions.len() - positions.len()
     }
 
@@ -136,6 +208,8 @@ impl Liquid {
         {
             let mut removed = fluid.deleted_particles_mask().iter();
             self.ids.retain(|_| removed.next() == Some(&false));
+            let mut removed = fluid.deleted_particles_mask().iter();
+            self.born.retain(|_| removed.next() == Some(&false));
         }
     }
 }

@@ -35,7 +35,7 @@ use self::{
 pub(crate) use self::{
     frame::{Frame, blend},
     geometry::Geometry,
-    liquid::{Newborn, Substance},
+    liquid::{Limits, Newborn, Substance},
     sampling::Triangle,
     solid::{Contact, Motion},
 };
@@ -61,8 +61,10 @@ pub(crate) enum Command {
     Fluid(Id, Substance),
     /// These are all particles of the fluid.
     Replace(Id, Newborn),
-    /// These particles are added to the fluid.
+    /// These particles are added to the fluid where there is room for them.
     Add(Id, Newborn),
+    /// Which particles of the fluid stay.
+    Limit(Id, Limits),
     RemoveFluid(Id),
     /// A solid is new, or another than it was.
     Solid {
@@ -180,17 +182,26 @@ impl World {
             Command::Replace(id, particles) => {
                 if let Some(liquid) = self.liquids.get_mut(&id) {
                     liquid.remove_all(&mut self.liquid_world);
-                    self.report.broken += liquid.add(&mut self.liquid_world, &particles);
+                    let world = &mut self.liquid_world;
+                    self.report.broken += liquid.add(world, &particles, self.time);
+                    liquid.is_fresh = true;
                 }
             }
             Command::Add(id, particles) => {
                 if let Some(liquid) = self.liquids.get_mut(&id) {
-                    self.report.broken += liquid.add(&mut self.liquid_world, &particles);
+                    let world = &mut self.liquid_world;
+                    self.report.broken += liquid.squeeze_in(world, particles, self.time);
+                }
+            }
+            Command::Limit(id, limits) => {
+                if let Some(liquid) = self.liquids.get_mut(&id) {
+                    liquid.limits = limits;
                 }
             }
             Command::RemoveFluid(id) => {
                 if let Some(mut liquid) = self.liquids.remove(&id) {
                     liquid.remove_all(&mut self.liquid_world);
+                    liquid.limits = Limits::default();
                     self.free.push(liquid);
                 }
             }
@@ -322,32 +333,42 @@ impl World {
     /// Marks particles that cannot be simulated, or are not to be. salva removes them with the
     /// next step.
     fn take_out(&mut self, job: &Job) {
-        let [low, high] = job.bounds.map(convert::liquid);
-        let too_fast = job.max_speed * job.max_speed;
+        let [low, high] = job.bounds;
         let within = WITHIN * self.liquid_world.particle_radius();
+        let is_within_solid = |place: Vec3| {
+            let distance = |solid: &Solid| solid.geometry.distance(solid.at.inverse() * place);
+            self.solids.values().any(|solid| distance(solid) < within)
+        };
         for liquid in self.liquids.values_mut().chain(&mut self.free) {
             let Some(fluid) = self.liquid_world.fluids_mut().get_mut(liquid.handle) else {
                 continue;
             };
             let is_fresh = core::mem::take(&mut liquid.is_fresh);
+            let limits = liquid.limits;
+            let oldest = self.time - f64::from(limits.lifetime);
+            let alive = fluid.num_particles() - fluid.num_deleted_particles();
+            let mut surplus = alive.saturating_sub(limits.capacity);
             for i in 0..fluid.num_particles() {
-                let (position, velocity) = (fluid.positions[i], fluid.velocities[i]);
-                let speed = velocity.norm_squared();
-                let is_finite = position.iter().all(|it| it.is_finite());
-                let is_broken = !is_finite || !(speed <= too_fast);
-                let is_inside = |(p, (low, high))| low <= p && p <= high;
-                let mut range = position.iter().zip(low.iter().zip(high.iter()));
-                if is_broken && !fluid.deleted_particles[i] {
-                    self.report.broken += 1;
+                if fluid.deleted_particles[i] {
+                    continue;
                 }
-                let is_within_solid = || {
-                    let position = from_liquid(&position);
-                    self.solids.values().any(|solid| {
-                        solid.geometry.distance(solid.at.inverse() * position) < within
-                    })
-                };
-                if is_broken || !range.all(is_inside) || is_fresh && is_within_solid() {
+                let position = from_liquid(&fluid.positions[i]);
+                let speed = from_liquid(&fluid.velocities[i]).length();
+                // Neither is what is not a number.
+                let is_sound = position.is_finite() && speed <= job.max_speed;
+                let is_inside = is_between(position, low, high)
+                    && limits.bounds.is_none_or(|(space, [low, high])| {
+                        is_between(space.transform_point3(position), low, high)
+                    });
+                let stays = is_sound
+                    && is_inside
+                    && surplus == 0
+                    && liquid.born[i] >= oldest
+                    && !(is_fresh && is_within_solid(position));
+                if !stays {
                     fluid.delete_particle_at_next_timestep(i);
+                    surplus = surplus.saturating_sub(1);
+                    self.report.broken += usize::from(!is_sound);
                 }
             }
             liquid.forget_removed(&self.liquid_world);
@@ -405,6 +426,10 @@ impl World {
             }
         }
     }
+}
+
+fn is_between(place: Vec3, low: Vec3, high: Vec3) -> bool {
+    place.cmpge(low).all() && place.cmple(high).all()
 }
 
 /// The speed of the fastest particle, m/s.
