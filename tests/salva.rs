@@ -118,7 +118,10 @@ fn a_column_keeps_its_height_and_rests_its_weight_on_the_tank() {
     // The push of walls cancels, that of the floor is the weight.
     let force = forces.iter().sum::<Vec3>() / forces.len() as f32;
     let weight = weight_of(count);
-    assert!((force.y / -weight - 1.0).abs() < 0.03, "{force} of {weight}");
+    assert!(
+        (force.y / -weight - 1.0).abs() < 0.03,
+        "{force} of {weight}"
+    );
     assert!(force.xz().length() < 0.03 * weight, "{force}");
 }
 
@@ -166,7 +169,10 @@ fn a_box_floats_as_deep_as_archimedes_has_it() {
         // The liquid's surface is no sharper than a particle, and as its level is off by up to 3 %
         // so is the body's.
         let error = height - expected;
-        assert!(error.abs() < RADIUS, "density {density}: {height} for {expected}");
+        assert!(
+            error.abs() < RADIUS,
+            "density {density}: {height} for {expected}"
+        );
     }
 }
 
@@ -209,7 +215,12 @@ fn a_shaken_tank_does_not_leak() {
 fn bowl(radius: f32) -> Mesh {
     let ball = Sphere::new(radius).mesh().uv(24, 12);
     let positions = ball.attribute(Mesh::ATTRIBUTE_POSITION).unwrap();
-    let positions: Vec<Vec3> = positions.as_float3().unwrap().iter().map(|&p| p.into()).collect();
+    let positions: Vec<Vec3> = positions
+        .as_float3()
+        .unwrap()
+        .iter()
+        .map(|&p| p.into())
+        .collect();
     let indices: Vec<usize> = ball.indices().unwrap().iter().collect();
     let mut corners = Vec::new();
     for face in indices.chunks_exact(3) {
@@ -226,17 +237,26 @@ fn a_mesh_holds_water_and_its_scale_counts() {
     let mut app = app();
     let radius = 0.7;
     // Half as large, scaled by two.
-    let mesh = app.world_mut().resource_mut::<Assets<Mesh>>().add(bowl(0.5 * radius));
+    let mesh = app
+        .world_mut()
+        .resource_mut::<Assets<Mesh>>()
+        .add(bowl(0.5 * radius));
     let scale = Transform::from_scale(Vec3::splat(2.0));
-    app.world_mut().spawn((SalvaBoundary::MESH, Mesh3d(mesh), scale));
+    app.world_mut()
+        .spawn((SalvaBoundary::MESH, Mesh3d(mesh), scale));
     // Dropped from above the rim onto the ground of the bowl, at 6 m/s.
     let water = spawn_water(&mut app, block(vec3(-0.3, -0.2, -0.3), vec3(0.3, 0.3, 0.3)));
-    app.world_mut().get_mut::<SalvaFluid>(water).unwrap().velocity = Vec3::NEG_Y * 6.0;
+    app.world_mut()
+        .get_mut::<SalvaFluid>(water)
+        .unwrap()
+        .velocity = Vec3::NEG_Y * 6.0;
     let count = particles(&app, water).len();
     run(&mut app, 2.0);
     assert_eq!(particles(&app, water).len(), count);
     // The rim may have been splashed over; what has come to rest in it is within.
-    let inside = particles(&app, water).iter().filter(|p| p.y > -radius - 1.0);
+    let inside = particles(&app, water)
+        .iter()
+        .filter(|p| p.y > -radius - 1.0);
     let inside: Vec<_> = inside.collect();
     for place in &inside {
         let below_rim = place.y < 0.0;
@@ -289,7 +309,10 @@ fn everything_may_come_and_go() {
     let (tank, water) = pool(&mut app, vec3(0.8, 1.0, 0.8), 0.4);
     let size = Vec3::splat(0.2);
     let body = SalvaBody::new(SalvaShape::Cuboid { size }, 400.0);
-    let body = app.world_mut().spawn((body, Transform::from_xyz(0.0, 0.8, 0.0))).id();
+    let body = app
+        .world_mut()
+        .spawn((body, Transform::from_xyz(0.0, 0.8, 0.0)))
+        .id();
     let other = spawn_water(&mut app, block(vec3(-0.2, 0.6, -0.2), vec3(0.2, 0.8, 0.2)));
     let others = particles(&app, other).len();
     run(&mut app, 0.1);
@@ -328,14 +351,18 @@ fn an_emitter_feeds_the_liquid() {
     let above = Transform::from_xyz(0.0, 1.0, 0.0);
     let jet = app.world_mut().spawn((emitter, SalvaFluid::WATER, above));
     let jet = jet.id();
-    app.world_mut().spawn((SalvaBoundary::PLANE, Transform::default()));
+    app.world_mut()
+        .spawn((SalvaBoundary::PLANE, Transform::default()));
     assert!(app.world().get::<ExternalMotion>(jet).is_some());
     run(&mut app, 0.3);
     let count = particles(&app, jet).len();
     // No more than fit through: 2 m/s over the nozzle's disc and half a particle around it.
     let flux = 2.0 * PI * (0.15_f32 + RADIUS).powi(2) / (2.0 * RADIUS * 0.8).powi(3);
     let most = (200.0_f32 * 0.3).min(flux * 0.3);
-    assert!(count as f32 > 0.4 * most && count as f32 <= most + 2.0, "{count} of {most}");
+    assert!(
+        count as f32 > 0.4 * most && count as f32 <= most + 2.0,
+        "{count} of {most}"
+    );
     run(&mut app, 1.0);
     // In the steady state the oldest go as new ones come.
     let steady = particles(&app, jet).len();

@@ -7,7 +7,8 @@ use crate::{emitter::ExternalMotion, particles::FluidParticles};
 /// A fluid that salva moves.
 ///
 /// The positions of the [`FluidParticles`] beside it are where it starts; from then on they are
-/// overwritten. Particles within a solid are taken out at the start. To start anew, write positions
+/// overwritten. Particles within a solid (that is no mesh) are
+/// taken out at the start. To start anew, write positions
 /// yourself: they are taken over, at [`velocity`](Self::velocity). Neighbours at rest are two radii
 /// apart: fill with a lattice of that spacing, one radius off the walls.
 ///
@@ -119,6 +120,13 @@ pub enum SalvaShape {
         radius: f32,
         /// Between the centres of its caps. Unit: m, from 0.
         length: f32,
+    },
+    /// A cylinder along y about the origin. Of an uneven scale the greatest counts.
+    Cylinder {
+        /// Unit: m, > 0.
+        radius: f32,
+        /// Unit: m, > 0.
+        height: f32,
     },
     /// The endless ground below the entity's plane y = 0. Only for boundaries.
     Plane,

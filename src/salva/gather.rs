@@ -1,10 +1,7 @@
 //! From components to what the simulation is told.
 
 use bevy::{
-    ecs::change_detection::Tick,
-    math::Affine3A,
-    prelude::*,
-    transform::helper::TransformHelper,
+    ecs::change_detection::Tick, math::Affine3A, prelude::*, transform::helper::TransformHelper,
 };
 
 use super::{
@@ -123,7 +120,10 @@ impl Simulation {
         if let Some(other) = self.fluids.values().next() {
             let others = other.radius;
             if (radius / others - 1.0).abs() > SAME_RADIUS {
-                return Err(SalvaError::OtherRadius { own: radius, others });
+                return Err(SalvaError::OtherRadius {
+                    own: radius,
+                    others,
+                });
             }
         } else {
             self.tell(Command::Radius(radius));

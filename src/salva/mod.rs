@@ -44,8 +44,8 @@
 //!
 //! # What is simulated
 //!
-//! DFSPH (Bender and Koschier 2015) with salva's pressure solver, in substeps as the fastest
-//! particle asks for. Solids are sampled by particles where liquid is near (Akinci et al. 2012); a
+//! IISPH (Ihmsen et al. 2014) with salva's pressure solver, in substeps as the fastest particle asks
+//! for; its volume is kept within some percent, the less the deeper and the finer. Solids are sampled by particles where liquid is near (Akinci et al. 2012); a
 //! ray along each particle's way through a step sees to it that none passes a surface.
 //!
 //! # Cost

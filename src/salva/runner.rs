@@ -192,7 +192,11 @@ impl Simulation {
             let steps = (delta / f64::from(settings.step) - 1e-3).ceil().max(1.0);
             let step = (delta / steps) as f32;
             self.pace = Pace::default();
-            self.begin(job(settings, steps as u32, step, None), settings.mode, status);
+            self.begin(
+                job(settings, steps as u32, step, None),
+                settings.mode,
+                status,
+            );
         }
         self.shown = self.to.time;
     }
@@ -232,6 +236,5 @@ fn job(settings: &SalvaSettings, steps: u32, step: f32, budget: Option<Duration>
         gravity: settings.gravity,
         max_speed: settings.max_speed,
         bounds: [settings.low, settings.high],
-        density_error: settings.density_error,
     }
 }

@@ -30,9 +30,6 @@ pub struct SalvaSettings {
     /// following frames. Less: more of the machine is left for others, and liquid gets slow
     /// sooner. Unused in [`SalvaMode::Lockstep`].
     pub budget: Duration,
-    /// How much denser than at rest the liquid may be left, as a mean over its particles.
-    /// Range 0.001..=0.1, default 0.01. Lower: it keeps its volume better, in more iterations.
-    pub density_error: f32,
     /// Particles faster than this are taken for broken and removed. Unit: m/s, range 1..=10000,
     /// default 100.
     pub max_speed: f32,
@@ -53,7 +50,6 @@ impl Default for SalvaSettings {
             max_substeps: 4,
             max_steps: 8,
             budget: Duration::from_millis(12),
-            density_error: 0.01,
             max_speed: 100.0,
             low: Vec3::splat(-1000.0),
             high: Vec3::splat(1000.0),
@@ -78,7 +74,6 @@ impl SalvaSettings {
             step: within(self.step, 0.001, 0.05, default.step),
             max_substeps: self.max_substeps.clamp(1, 16),
             max_steps: self.max_steps.clamp(1, 64),
-            density_error: within(self.density_error, 0.001, 0.1, default.density_error),
             max_speed: within(self.max_speed, 1.0, 1e4, default.max_speed),
             low: finite(self.low, default.low),
             high: finite(self.high, default.high),

@@ -55,10 +55,12 @@ pub(crate) fn geometry(
             let shaft = if shaft == 0.0 { 0.0 } else { length(shaft)? };
             Ok(Geometry::capsule(length(radius)?, 0.5 * shaft))
         }
-        SalvaShape::Tank { .. } | SalvaShape::Plane if is_body => Err(SalvaError::BodyShape),
-        SalvaShape::Tank { size } => {
-            Geometry::tank(half(size)?).ok_or(SalvaError::Shape(shape))
+        SalvaShape::Cylinder { radius, height } => {
+            let cylinder = Geometry::cylinder(length(radius)?, 0.5 * length(height)?);
+            cylinder.ok_or(SalvaError::Shape(shape))
         }
+        SalvaShape::Tank { .. } | SalvaShape::Plane if is_body => Err(SalvaError::BodyShape),
+        SalvaShape::Tank { size } => Geometry::tank(half(size)?).ok_or(SalvaError::Shape(shape)),
         SalvaShape::Plane => Ok(Geometry::plane()),
         SalvaShape::Mesh => {
             let faces = mesh.and_then(|mesh| triangles(mesh, scale));

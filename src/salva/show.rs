@@ -43,7 +43,10 @@ pub(crate) fn show_fluids(
     let is_other = shown.update(&simulation);
     let share = simulation.share();
     let Simulation {
-        from, to, fluids: entries, ..
+        from,
+        to,
+        fluids: entries,
+        ..
     } = &mut *simulation;
     for (entity, mut particles) in &mut fluids {
         let Some(entry) = entries.get_mut(&entity) else {

@@ -107,7 +107,13 @@ fn particles_replaced_in_flight_are_not_overwritten() {
     app.update();
     go.send(()).unwrap();
     finish_job(&mut app);
-    let positions = |app: &App| app.world().get::<FluidParticles>(water).unwrap().positions.clone();
+    let positions = |app: &App| {
+        app.world()
+            .get::<FluidParticles>(water)
+            .unwrap()
+            .positions
+            .clone()
+    };
     assert_eq!(positions(&app), [Vec3::Y * 5.0]);
     go.send(()).unwrap();
     finish_job(&mut app);

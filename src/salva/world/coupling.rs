@@ -20,7 +20,7 @@ use super::{
     convert::{from_liquid, liquid},
     geometry::Surface,
     sampling::neighbors,
-    solid::{DEPTH, Solid},
+    solid::Solid,
 };
 
 /// Width of a cell over the kernel's support: surface particles count as far as that from liquid,
@@ -51,7 +51,8 @@ impl Nearby {
         let filled = self.cells.len();
         for i in 0..filled {
             let cell = IVec3::from_array(self.cells[i]);
-            self.cells.extend(neighbors(cell).map(|cell| cell.to_array()));
+            self.cells
+                .extend(neighbors(cell).map(|cell| cell.to_array()));
         }
         self.sort();
     }
@@ -146,7 +147,7 @@ fn place(solid: &Solid, boundary: &mut Boundary, nearby: &Nearby, radius: f32) {
         boundary.velocities.push(liquid(solid.velocity_at(place)));
     };
     match solid.geometry.surface {
-        Surface::Plane => nearby.on_plane(solid.at, DEPTH * radius, 2.0 * radius, add),
+        Surface::Plane => nearby.on_plane(solid.at, radius, 2.0 * radius, add),
         Surface::Triangles(_) => {
             for sample in &solid.samples {
                 let place = solid.at * *sample;

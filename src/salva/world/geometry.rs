@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use salva3d::rapier::{
     geometry::SharedShape,
     math::Pose,
-    parry::shape::{Ball, Capsule, Cuboid, TriMesh, TriMeshFlags},
+    parry::shape::{Ball, Capsule, Cuboid, Cylinder, TriMesh, TriMeshFlags},
 };
 
 use super::{
@@ -92,6 +92,17 @@ impl Geometry {
         }
     }
 
+    /// A cylinder along y about the origin. Its shell is of triangles: parry's rays meet those more
+    /// exactly.
+    pub(crate) fn cylinder(radius: f32, half_height: f32) -> Option<Self> {
+        let faces = triangles(Cylinder::new(half_height, radius).to_trimesh(SEGMENTS));
+        Some(Self {
+            shell: shell(&faces)?,
+            surface: Surface::Triangles(faces),
+            collider: SharedShape::cylinder(half_height, radius),
+        })
+    }
+
     /// All below y = 0.
     pub(crate) fn plane() -> Self {
         let shape = SharedShape::halfspace(RigidVector::Y);
@@ -129,7 +140,7 @@ impl Geometry {
 
     /// How near `place` is to the surface, 0 inside of what is solid.
     pub(crate) fn distance(&self, place: Vec3) -> f32 {
-        self.shell.distance_to_local_point(rigid(place), true)
+        self.collider.distance_to_local_point(rigid(place), true)
     }
 }
 

@@ -61,7 +61,11 @@ fn cross(shape: &dyn Shape, start: Vec3, end: Vec3) -> Option<(Vec3, Vec3)> {
     let ray = Ray::new(rigid(start), rigid(way));
     let hit = shape.cast_local_ray_and_get_normal(&ray, 1.0, false)?;
     let normal = from_rigid(hit.normal);
-    let normal = if normal.dot(way) > 0.0 { -normal } else { normal };
+    let normal = if normal.dot(way) > 0.0 {
+        -normal
+    } else {
+        normal
+    };
     Some((start + way * hit.time_of_impact, normal))
 }
 
@@ -139,11 +143,44 @@ mod tests {
     }
 
     #[test]
+    fn no_shape_is_entered_from_any_side() {
+        use super::super::geometry::Geometry;
+        let shapes = [
+            Geometry::cuboid(vec3(0.3, 0.5, 0.2)),
+            Geometry::sphere(0.4),
+            Geometry::capsule(0.2, 0.3),
+            Geometry::cylinder(0.3, 0.4).unwrap(),
+        ];
+        for geometry in shapes {
+            let shell = &*geometry.shell.0;
+            for i in 0..2000 {
+                let [u, v, w] =
+                    [0.819_173, 0.671_044, 0.549_7].map(|step| (i as f32 * step).fract());
+                let height = 2.0 * u - 1.0;
+                let around = Vec2::from_angle(6.283 * v) * (1.0 - height * height).sqrt();
+                let from = 2.0 * vec3(around.x, height, around.y);
+                // Somewhere within.
+                let to = 0.15 * vec3(w - 0.5, v - 0.5, u - 0.5);
+                let stopped = stop(&[still(shell)], from, to, MARGIN).unwrap();
+                let distance = geometry.distance(stopped.position);
+                // A cylinder's triangles lie up to half a percent within it.
+                let is_outside = distance > 0.0 || stopped.position.xz().length() > 0.298;
+                assert!(is_outside, "{:?} {from} to {to}", shell.shape_type());
+            }
+        }
+    }
+
+    #[test]
     fn a_corner_of_two_surfaces_holds() {
         let floor = HalfSpace::new(rigid(Vec3::Y));
         let wall = HalfSpace::new(rigid(Vec3::X));
         let surfaces = [still(&floor), still(&wall)];
-        let stopped = stop(&surfaces, vec3(0.1, 0.2, 0.0), vec3(-3.0, -3.0, 0.0), MARGIN);
+        let stopped = stop(
+            &surfaces,
+            vec3(0.1, 0.2, 0.0),
+            vec3(-3.0, -3.0, 0.0),
+            MARGIN,
+        );
         let place = stopped.unwrap().position;
         assert!(place.x > 0.0 && place.y > 0.0, "{place}");
     }

@@ -156,7 +156,10 @@ mod tests {
 
     #[test]
     fn what_is_no_surface_is_refused() {
-        assert_eq!(sample(&[[Vec3::ZERO, Vec3::X * 1e9, Vec3::Y * 1e9]], 0.1), None);
+        assert_eq!(
+            sample(&[[Vec3::ZERO, Vec3::X * 1e9, Vec3::Y * 1e9]], 0.1),
+            None
+        );
         assert_eq!(sample(&[[Vec3::NAN, Vec3::X, Vec3::Y]], 0.1), None);
         assert_eq!(sample(&[], 0.1), Some(Vec::new()));
     }

@@ -17,12 +17,6 @@ use super::{
     sampling,
 };
 
-/// How far behind the surface its particles lie, in radii. salva gives the particles of a single
-/// layer 1.4 times the volume of liquid particles, for those that would lie behind them; at 1 that
-/// would be too much pressure by some percent, at 1.2 too little. Measured: the mean height of a
-/// column at rest.
-pub(crate) const DEPTH: f32 = 1.1;
-
 /// How a solid moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Motion {
@@ -132,7 +126,7 @@ impl Solid {
         let Surface::Triangles(faces) = &self.geometry.surface else {
             return true;
         };
-        let samples = sampling::sample(&sampling::inset(faces, DEPTH * radius), 2.0 * radius);
+        let samples = sampling::sample(&sampling::inset(faces, radius), 2.0 * radius);
         let is_sampled = samples.is_some();
         self.samples = samples.unwrap_or_default();
         is_sampled
