@@ -34,6 +34,11 @@
 //!
 //! Only what a scene has is done: see [`render::plan`].
 //!
+//! # Where particles come from
+//!
+//! From anywhere: [`FluidParticles`] is all there is to write. With the feature `salva`,
+//! `SalvaPlugin` simulates them live, among boundaries and floating bodies; see the module `salva`.
+//!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 

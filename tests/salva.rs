@@ -226,7 +226,7 @@ fn bowl(radius: f32) -> Mesh {
     for face in indices.chunks_exact(3) {
         let [a, b, c] = [0, 1, 2].map(|i| positions[face[i]]);
         if a.y + b.y + c.y < 0.0 {
-            corners.extend([a, c, b].map(Vec3::to_array));
+            corners.extend([a, c, b].map(|corner| corner.to_array()));
         }
     }
     Mesh::new(default(), default()).with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, corners)
@@ -244,12 +244,12 @@ fn a_mesh_holds_water_and_its_scale_counts() {
     let scale = Transform::from_scale(Vec3::splat(2.0));
     app.world_mut()
         .spawn((SalvaBoundary::MESH, Mesh3d(mesh), scale));
-    // Dropped from above the rim onto the ground of the bowl, at 6 m/s.
+    // Dropped from above the rim onto the ground of the bowl, at 3 m/s.
     let water = spawn_water(&mut app, block(vec3(-0.3, -0.2, -0.3), vec3(0.3, 0.3, 0.3)));
     app.world_mut()
         .get_mut::<SalvaFluid>(water)
         .unwrap()
-        .velocity = Vec3::NEG_Y * 6.0;
+        .velocity = Vec3::NEG_Y * 3.0;
     let count = particles(&app, water).len();
     run(&mut app, 2.0);
     assert_eq!(particles(&app, water).len(), count);

@@ -120,6 +120,11 @@ impl Plugin for SalvaPlugin {
                     .in_set(SalvaSystems)
                     .before(TransformSystems::Propagate),
             )
-            .add_systems(PostUpdate, emit::emit.in_set(FluidSystems::Emit));
+            .add_systems(
+                PostUpdate,
+                emit::emit
+                    .in_set(FluidSystems::Emit)
+                    .after(TransformSystems::Propagate),
+            );
     }
 }
