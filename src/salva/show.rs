@@ -5,6 +5,7 @@ use bevy::{prelude::*, transform::helper::TransformHelper};
 use super::{
     SalvaBody, SalvaFluid, SalvaLoad,
     runner::Simulation,
+    shape::split,
     world::{Frame, blend},
 };
 use crate::particles::FluidParticles;
@@ -104,8 +105,10 @@ pub(crate) fn show_bodies(
         let start = place(from).unwrap_or(end);
         transform.translation = start.translation.lerp(end.translation, share).into();
         transform.rotation = start.rotation.slerp(end.rotation, share);
-        // As it is read from the transform, to notice when somebody else writes it.
-        entry.at = Isometry3d::new(transform.translation, transform.rotation);
+        // As it will be read from the transform, to notice when somebody else writes it.
+        if let Ok((at, _)) = split(&GlobalTransform::from(*transform)) {
+            entry.at = at;
+        }
     }
 }
 
