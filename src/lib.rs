@@ -36,19 +36,38 @@
 //!
 //! # Where particles come from
 //!
-//! From anywhere: [`FluidParticles`] is all there is to write. With the feature `salva`,
-//! `SalvaPlugin` simulates them live, among boundaries and floating bodies; see the module `salva`.
+//! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
+//! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
+//! [`FluidSystems::Simulate`]. They do not push each other. With the feature `recordings`, `recording`
+//! plays numbered particle files into them, loaded in the background, and writes such files. With
+//! `salva`, `SalvaPlugin` simulates liquids live, among boundaries and floating bodies; see the module
+//! `salva`.
+//!
+//! # Looking inside
+//!
+//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'
+//! times and the debug views: F1 opens it. [`FluidDebugView`] chooses a debug view without it.
+//!
+//! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
+//! finds them: see [`diagnostics`] for the paths.
 //!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
 
 mod complaints;
+pub mod diagnostics;
 mod emitter;
+#[cfg(feature = "inspector")]
+pub mod inspector;
+mod limits;
 mod material;
 mod medium;
 mod particles;
 pub mod rain;
 mod random;
+mod range;
+#[cfg(feature = "recordings")]
+pub mod recording;
 pub mod render;
 #[cfg(feature = "salva")]
 pub mod salva;
@@ -58,7 +77,10 @@ pub mod shape;
 
 use bevy::prelude::*;
 
+#[cfg(feature = "inspector")]
+pub use crate::inspector::FluidInspectorPlugin;
 pub use crate::{
+    diagnostics::FluidDiagnosticsPlugin,
     emitter::{
         ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
         ParticleCollider, ParticleEmitter,
@@ -67,6 +89,7 @@ pub use crate::{
     medium::{Medium, MediumError},
     particles::{FluidParticles, ShapedFluid},
     rain::{Rain, RainPlugin},
+    range::SettingRange,
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
@@ -120,11 +143,18 @@ impl Plugin for FluidPlugin {
                 layer_blending: self.layer_blending,
                 shortcuts: self.shortcuts,
             },
-        ));
+        ))
+        .register_type::<FluidParticles>()
+        .register_type::<FluidMaterial>()
+        .register_type::<SurfaceKernel>()
+        .register_type::<ScreenSpaceFluid>()
+        .register_type::<FluidDebugView>();
+        #[cfg(feature = "recordings")]
+        app.add_plugins(recording::RecordingPlugin);
     }
 }
 
-/// The README's code is compiled with the doc tests.
-#[cfg(doctest)]
+/// The README's code is compiled with the doc tests, where the features are there that it shows.
+#[cfg(all(doctest, feature = "recordings"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

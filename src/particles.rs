@@ -4,6 +4,7 @@ use bevy::prelude::*;
 
 use crate::{
     material::FluidMaterial,
+    range::SettingRange,
     schedule::FluidSystems,
     shape::{FluidSplats, ShapeTimes, ShapeWorkspace, SurfaceKernel},
 };
@@ -20,6 +21,7 @@ pub struct FluidParticles {
     /// counted in [`ShapedFluid::dropped`].
     pub positions: Vec<Vec3>,
     /// Radius of every particle, half the distance between neighbours at rest. Unit: m, > 0.
+    #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open())]
     pub radius: f32,
 }
 

@@ -2,6 +2,8 @@
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
+use crate::range::SettingRange;
+
 /// Makes a camera draw particle fluids.
 ///
 /// The presets are points on the measured front of speed against error (bench `speed_error`): the
@@ -26,30 +28,26 @@ pub struct ScreenSpaceFluid {
     /// straight on to it and no layer of air is seen between. Unit: particle radii, range 0..=8,
     /// default 1: what simulations leave between particles and walls. Higher: thin gaps of air
     /// vanish. 0: liquid and solids never touch.
+    #[reflect(@SettingRange::new(0.0, 8.0).unit("radii"))]
     pub contact: f32,
 }
 
 impl ScreenSpaceFluid {
-    /// One refraction over separably smoothed depth. Time 0.43 (box) to 0.66 (ball) of the
-    /// default's; FLIP 0.60 and 0.43 against its 0.53 and 0.26.
+    /// One refraction over separably smoothed depth. Time 0.48 (box) to 0.71 (ball) of the
+    /// default's; FLIP 0.60 and 0.42 against its 0.53 and 0.24.
     pub const FAST: Self = Self {
         refractions: Refractions::One,
         ..Self::DEFAULT
     };
 
-    /// As near to the truth as the method gets: smoothed twice, and searched in eight steps first.
-    /// Time 1.08 of the default's; FLIP 0.53 (box) and 0.25 (ball).
+    /// As near to the truth as the method gets: searched in eight steps first.
+    /// Time 1.06 of the default's; FLIP 0.53 (box) and 0.23 (ball).
     pub const ACCURATE: Self = Self {
-        smoothing: Smoothing::PlaneFit(PlaneFit {
-            iterations: 2,
-            window: Window::Radii(1.0),
-            ..PlaneFit::DEFAULT
-        }),
         search: Search::Bracketed { coarse_samples: 8 },
         ..Self::DEFAULT
     };
 
-    /// The default: FLIP 0.53 (box) and 0.26 (ball), normals off by 1.3° in the median.
+    /// The default: FLIP 0.53 (box) and 0.24 (ball), normals off by 1.0° in the median.
     pub const DEFAULT: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),
         refractions: Refractions::Four,
@@ -59,8 +57,8 @@ impl ScreenSpaceFluid {
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.
-    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 1.46 (box) and
-    /// 1.62 (ball) of the default's; FLIP 0.56 and 0.43.
+    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and
+    /// 2.1 (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
         refractions: Refractions::Four,
@@ -71,7 +69,7 @@ impl ScreenSpaceFluid {
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
     /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
-    /// Time 2.0 (box) and 3.1 (ball) of the default's; FLIP 0.56 and 0.39.
+    /// Time 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
         refractions: Refractions::Two,
@@ -125,6 +123,7 @@ pub enum Search {
     Bracketed {
         /// Evenly spaced samples taken first, to find the first of several crossings.
         /// Range 0..=32, default 0. More: fewer wrong crossings at steps in depth.
+        #[reflect(@SettingRange::new(0.0, 32.0).unit("samples").start(0.0))]
         coarse_samples: u32,
     },
 }
@@ -181,7 +180,7 @@ impl Default for Smoothing {
 pub enum Window {
     /// So many particle radii as they appear on screen, whatever the distance: taps spread out
     /// for near particles and fall away for far ones. Range 0.05..=4.
-    Radii(f32),
+    Radii(#[reflect(@SettingRange::new(0.05, 4.0).unit("radii").logarithmic())] f32),
     /// As many pixels as there are taps, as the papers have it.
     Pixels,
 }
@@ -192,18 +191,22 @@ pub enum Window {
 pub struct PlaneFit {
     /// Which fit. Default: separable.
     pub form: PlaneFitForm,
-    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 4.
+    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 5.
     /// More: smoother between taps, at a linear (separable) or quadratic price.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often the fit is repeated. Range 1..=8, default 1. More: smoother.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
-    /// How large the window is. Default 1.3 radii. Larger: smoother, less detail.
+    /// How large the window is. Default 1.7 radii. Larger: smoother, less detail.
     pub window: Window,
     /// Depth difference at which a tap counts exp(-1). Unit: particle radii, range 0.5..=4,
     /// default 2. Higher: smoother, but steps in depth begin to leak into each other.
+    #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
     /// How far the fit may move a pixel before the old depth is kept. Unit: particle radii,
     /// range 0.1.., default 2.
+    #[reflect(@SettingRange::new(0.1, 8.0).unit("radii").open())]
     pub bound: f32,
 }
 
@@ -211,9 +214,9 @@ impl PlaneFit {
     /// Rows, then columns, in device depth.
     pub const DEFAULT: Self = Self {
         form: PlaneFitForm::Separable,
-        half_taps: 4,
+        half_taps: 5,
         iterations: 1,
-        window: Window::Radii(1.3),
+        window: Window::Radii(1.7),
         range: 2.0,
         bound: 2.0,
     };
@@ -221,6 +224,7 @@ impl PlaneFit {
     /// As published: total least squares over 9×9 pixels, three times.
     pub const THESIS: Self = Self {
         form: PlaneFitForm::TotalLeastSquares,
+        half_taps: 4,
         iterations: 3,
         window: Window::Pixels,
         ..Self::DEFAULT
@@ -252,12 +256,15 @@ pub enum PlaneFitForm {
 #[reflect(Default, Clone, PartialEq)]
 pub struct Bilateral {
     /// Taps to each side of the centre. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often the filter is repeated. Range 1..=64, default 22.
+    #[reflect(@SettingRange::new(1.0, 64.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 0.5 radii.
     pub window: Window,
     /// σ₂ in particle radii. Range 0.5..=4, default 2√2.
+    #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -288,6 +295,7 @@ impl Default for Bilateral {
 #[reflect(Default, Clone, PartialEq)]
 pub struct NormalAverage {
     /// Taps to each side of the centre. Range 1..=8, default 4.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How large the window is. Default 0.65 radii.
     pub window: Window,
@@ -307,13 +315,16 @@ impl Default for NormalAverage {
 #[reflect(Default, Clone, PartialEq)]
 pub struct NarrowRange {
     /// Taps to each side of the centre. Range 1..=8, default 6.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often rows and columns are filtered. Range 1..=8, default 3.
+    #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 1.5 radii.
     pub window: Window,
     /// δ, the depth difference that belongs to the surface. Unit: particle radii, range 1..=20,
     /// default 10 as published.
+    #[reflect(@SettingRange::new(1.0, 20.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -333,11 +344,14 @@ impl Default for NarrowRange {
 #[reflect(Default, Clone, PartialEq)]
 pub struct CurvatureFlow {
     /// Number of steps. Range 1..=200, default 60.
+    #[reflect(@SettingRange::new(1.0, 200.0).unit("steps"))]
     pub iterations: u32,
     /// Time step. Unit: pixels squared, range 0.01..=0.5, default 0.4. Larger: smoother; explicit
     /// steps ring beyond 0.5.
+    #[reflect(@SettingRange::new(0.01, 0.5).unit("px²"))]
     pub step: f32,
     /// Depth differences beyond this are edges. Unit: particle radii, range 0.5..=8, default 3.
+    #[reflect(@SettingRange::new(0.5, 8.0).unit("radii"))]
     pub range: f32,
 }
 
@@ -373,4 +387,30 @@ pub enum FluidDebugView {
     Status,
     /// Bulk blue, spray orange.
     Classes,
+    /// The straight way through the liquid at each pixel: black 0, white as far as the body's box
+    /// is deep, and where nothing is seen through it.
+    Thickness,
+    /// Where each ray goes in the end: its direction in view space, −1..=1 shown as 0..=1, half as
+    /// bright where it ends at an opaque surface or goes straight on.
+    ExitRay,
+    /// How many splats are drawn at each pixel: violet 1, red 4, orange 16, white 64 and more.
+    /// It takes a pass of its own.
+    Overdraw,
+}
+
+impl FluidDebugView {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::BulkFront,
+        Self::BulkBack,
+        Self::SprayFront,
+        Self::SprayBack,
+        Self::Normals,
+        Self::Interfaces,
+        Self::Status,
+        Self::Classes,
+        Self::Thickness,
+        Self::ExitRay,
+        Self::Overdraw,
+    ];
 }

@@ -8,11 +8,9 @@ use std::{
 };
 
 use bevy::prelude::*;
+use bevy_fluid::recording::ParticleFrame;
 use proptest::{prelude::*, sample::Index, test_runner::TestRunner};
 use splashsurf_lib::{io, nalgebra::Vector3};
-
-#[path = "../examples/viewer/particles.rs"]
-mod particles;
 
 /// For any file of some kilobytes; a header that is believed asks for gigabytes.
 const MOST_MEMORY: u64 = 256 << 20;
@@ -85,15 +83,17 @@ fn read(extension: &str, bytes: &[u8]) -> Option<Vec<Vec3>> {
     let path = folder().join(format!("fuzzed.{extension}"));
     fs::write(&path, bytes).unwrap();
     let began = Instant::now();
-    let result = particles::read(&path);
+    let result = ParticleFrame::read(&path);
     assert!(
         began.elapsed() < MOST_TIME,
         "{extension}: {:?}",
         began.elapsed()
     );
     match result {
-        Ok(points) => {
-            assert!(!points.is_empty());
+        Ok(frame) => {
+            let points = frame.positions;
+            let fits = |attribute: usize| [0, points.len()].contains(&attribute);
+            assert!(fits(frame.ids.len()) && fits(frame.velocities.len()));
             // Zipped, a point can be as short as nothing at all.
             let zipped = bytes.starts_with(&[0x1f, 0x8b]);
             assert!(zipped || points.len() <= bytes.len() / 3);

@@ -7,14 +7,14 @@
 //! Try `--debug-view normals`, `--smoothing none`, `--refractions 1`, `--isotropic`.
 
 mod args;
-mod particles;
 mod scene;
 mod stats;
 
 use std::process::ExitCode;
 
-use anyhow::anyhow;
+use anyhow::{anyhow, ensure};
 use bevy::prelude::*;
+use bevy_fluid::recording::ParticleFrame;
 use fluid_stage::{PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle};
 
 use crate::{args::Args, scene::ScenePlugin};
@@ -31,7 +31,12 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let positions = particles::read(&args.file)?;
+    let positions = ParticleFrame::read(&args.file)?.positions;
+    ensure!(
+        !positions.is_empty(),
+        "{} is empty: it holds no particles",
+        args.file.display()
+    );
     let scene = ScenePlugin::new(args, positions);
     if args.out.is_none() && args.stats.is_none() {
         let stage = StagePlugins {

@@ -5,7 +5,7 @@
 //! has all of the solid behind it. So one distance each is all that a shape needs, and nothing
 //! tunnels.
 
-use bevy::math::Vec3;
+use bevy::math::Vec3A;
 
 /// A convex solid in its own space. Lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub(super) enum Solid {
         radius: f32,
     },
     Cuboid {
-        half_size: Vec3,
+        half_size: Vec3A,
     },
     /// About the y axis.
     Capsule {
@@ -32,30 +32,30 @@ const STEPS: usize = 24;
 
 impl Solid {
     /// The signed distance of a point from the surface, negative inside, and its gradient.
-    pub(super) fn distance(&self, point: Vec3) -> (f32, Vec3) {
+    pub(super) fn distance(&self, point: Vec3A) -> (f32, Vec3A) {
         match *self {
-            Self::HalfSpace => (point.y, Vec3::Y),
+            Self::HalfSpace => (point.y, Vec3A::Y),
             Self::Sphere { radius } => ball(point, radius),
             Self::Capsule {
                 radius,
                 half_length,
             } => {
                 let along = point.y.clamp(-half_length, half_length);
-                ball(point - along * Vec3::Y, radius)
+                ball(point - along * Vec3A::Y, radius)
             }
             Self::Cuboid { half_size } => {
                 let beyond = point.abs() - half_size;
-                let side = Vec3::ONE.copysign(point);
+                let side = Vec3A::ONE.copysign(point);
                 let depth = beyond.max_element();
                 if depth > 0.0 {
-                    let out = beyond.max(Vec3::ZERO);
+                    let out = beyond.max(Vec3A::ZERO);
                     let distance = out.length();
                     return (distance, side * out / distance);
                 }
                 let axis = match beyond {
-                    b if b.x == depth => Vec3::X,
-                    b if b.y == depth => Vec3::Y,
-                    _ => Vec3::Z,
+                    b if b.x == depth => Vec3A::X,
+                    b if b.y == depth => Vec3A::Y,
+                    _ => Vec3A::Z,
                 };
                 (depth, side * axis)
             }
@@ -64,14 +64,19 @@ impl Solid {
 
     /// The part of `way` from `start` after which a ball of `radius` meets the solid, if it does:
     /// where they are nearer than `tolerance` and come nearer.
-    pub(super) fn sweep(&self, start: Vec3, way: Vec3, radius: f32, tolerance: f32) -> Option<f32> {
+    pub(super) fn sweep(
+        &self,
+        start: Vec3A,
+        way: Vec3A,
+        radius: f32,
+        tolerance: f32,
+    ) -> Option<f32> {
         let flattest = -GRAZE * way.length();
         let mut part = 0.0;
         for _ in 0..STEPS {
             let (distance, normal) = self.distance(start + part * way);
             let (gap, slope) = (distance - radius, normal.dot(way));
-            // Not so for NaN either.
-            if !(slope < flattest) {
+            if slope >= flattest || slope.is_nan() {
                 return None;
             }
             if gap <= tolerance {
@@ -86,12 +91,12 @@ impl Solid {
     }
 }
 
-fn ball(point: Vec3, radius: f32) -> (f32, Vec3) {
+fn ball(point: Vec3A, radius: f32) -> (f32, Vec3A) {
     let distance = point.length();
     let normal = if distance > 0.0 {
         point / distance
     } else {
-        Vec3::Y
+        Vec3A::Y
     };
     (distance - radius, normal)
 }

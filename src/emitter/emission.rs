@@ -38,6 +38,7 @@ impl Emission {
     /// oldest first, those of a burst last. It is to be called in every frame, so that it knows the
     /// emitter's way; nothing is born while no time passes.
     ///
+    /// Nothing is born where the transform is not finite or has no rotation, as with a scale of 0.
     /// `emitter` is what [`ParticleEmitter::take`] gives. No more are born than its capacity: of
     /// more, the last ones.
     pub(crate) fn emit(
@@ -47,11 +48,11 @@ impl Emission {
         seconds: f64,
         mut birth: impl FnMut(Birth),
     ) {
-        let to = Pose::from(to);
-        let from = self.last.replace(to).unwrap_or(to);
-        if seconds <= 0.0 {
+        let from = core::mem::replace(&mut self.last, Pose::new(to));
+        let Some(to) = self.last.filter(|_| seconds > 0.0) else {
             return;
-        }
+        };
+        let from = from.unwrap_or(to);
         let nozzle = Nozzle::new(emitter);
         let rate = if emitter.enabled {
             f64::from(emitter.rate)
@@ -90,18 +91,17 @@ struct Pose {
     translation: Vec3,
 }
 
-impl From<&GlobalTransform> for Pose {
-    fn from(transform: &GlobalTransform) -> Self {
+impl Pose {
+    fn new(transform: &GlobalTransform) -> Option<Self> {
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        Self {
+        let is_sound = scale.is_finite() && rotation.is_finite() && translation.is_finite();
+        is_sound.then_some(Self {
             scale,
             rotation,
             translation,
-        }
+        })
     }
-}
 
-impl Pose {
     /// A part of the way from here to there.
     fn towards(&self, to: &Self, part: f32) -> Self {
         if self == to {

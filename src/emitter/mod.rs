@@ -21,7 +21,7 @@ pub use self::{
 };
 
 pub(crate) use self::emission::Emission;
-use crate::{particles::FluidParticles, schedule::FluidSystems};
+use crate::{particles::FluidParticles, range::SettingRange, schedule::FluidSystems};
 
 /// Lets particles out of its entity, which is a fluid of them.
 ///
@@ -53,50 +53,73 @@ pub struct ParticleEmitter {
     /// Whether particles come out. Default true. Those that are out fly on without it.
     pub enabled: bool,
     /// How many particles come out, evenly in time. Unit: 1/s, range 0..=10,000,000, default 1000.
+    #[reflect(@SettingRange::new(0.0, 1e7).unit("1/s").logarithmic())]
     pub rate: f32,
     /// How fast they come out. Unit: m/s, range 0..=1000, default 4, which rises 0.8 m.
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub speed: f32,
     /// Where they come out to, in the entity's space. Its length does not matter. Default: up, +y.
+    #[reflect(@SettingRange::new(-1.0, 1.0))]
     pub direction: Vec3,
     /// Half the angle of the cone that they fill, evenly. Unit: rad, range 0..=π, default 0.05.
     /// Higher: from a jet to a spray, a half-space (π/2) and all around (π).
+    #[reflect(@SettingRange::new(0.0, PI as f64).unit("rad"))]
     pub spread: f32,
     /// Radius of the disc that they come from, across the direction, in the entity's space.
     /// Unit: m, range 0..=1000, default 0.05. 0: a point.
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic())]
     pub nozzle: f32,
     /// How unsteady they are: a random velocity in a ball of this radius is added to each. Unit: m/s,
     /// range 0..=1000, default 0.1. Higher: the jet breaks up sooner.
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub jitter: f32,
     /// Radius of every particle, in the entity's space: [`FluidParticles::radius`]. Unit: m, range
     /// 1e-6..=1e6, default 0.02.
+    #[reflect(@SettingRange::new(1e-6, 1e6).unit("m").logarithmic())]
     pub particle_radius: f32,
     /// Age at which they vanish. Unit: s, from 0, default 3. Infinite: never.
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().open())]
     pub lifetime: f32,
     /// What pulls at them, in the world. Unit: m/s², range −1000..=1000 each, default −9.81 along y.
+    #[reflect(@SettingRange::new(-1e3, 1e3).unit("m/s²"))]
     pub gravity: Vec3,
     /// Share of their velocity that the air takes. Unit: 1/s, range 0..=1000, default 0. Higher:
     /// they slow down sooner, and fall at gravity / drag in the end.
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("1/s").logarithmic())]
     pub drag: f32,
     /// Box in the entity's space beyond which they vanish. Default: none.
     pub bounds: Option<EmitterBounds>,
     /// How many there are at most; the oldest make room for new ones. Range 0..=10,000,000, default
     /// 100,000.
+    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
     pub capacity: u32,
     /// Other seeds, other particles. Default 0.
     pub seed: u64,
     /// Particles that come out at once in the next step; then it is 0 again. Default 0. See
     /// [`burst`](Self::burst).
+    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
     pub queued: u32,
 }
 
 /// A box, in the space of an emitter's entity.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq)]
 pub struct EmitterBounds {
-    /// Its lower corner. Unit: m.
+    /// Its lower corner. Unit: m, default −10 each.
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
     pub min: Vec3,
-    /// Its upper corner, nowhere below the other. Unit: m.
+    /// Its upper corner, nowhere below the other. Unit: m, default 10 each.
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
     pub max: Vec3,
+}
+
+impl Default for EmitterBounds {
+    fn default() -> Self {
+        Self {
+            min: Vec3::splat(-10.0),
+            max: Vec3::splat(10.0),
+        }
+    }
 }
 
 /// Stands beside a [`ParticleEmitter`] whose particles something else moves: they do not come into
@@ -217,15 +240,18 @@ pub(crate) fn step(time: &Time) -> f64 {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.register_type::<ParticleEmitter>().add_systems(
-        PostUpdate,
-        (
-            (check::check_emitters, particles::emit)
+    app.register_type::<ParticleEmitter>()
+        .register_type::<ParticleCollider>()
+        .register_type::<ExternalMotion>()
+        .add_systems(
+            PostUpdate,
+            (
+                (check::check_emitters, particles::emit)
+                    .chain()
+                    .in_set(FluidSystems::Emit),
+                particles::simulate.in_set(FluidSystems::Simulate),
+            )
                 .chain()
-                .in_set(FluidSystems::Emit),
-            particles::simulate.in_set(FluidSystems::Simulate),
-        )
-            .chain()
-            .after(TransformSystems::Propagate),
-    );
+                .after(TransformSystems::Propagate),
+        );
 }

@@ -4,9 +4,9 @@
 //! is met on the way is found along the chord of the flight, so that nothing tunnels; the moment of
 //! contact is then sought on the flight itself, so that a bounce has the right speed.
 
-use bevy::math::Vec3;
+use bevy::math::Vec3A;
 
-use super::colliders::Collider;
+use super::colliders::{Collider, Colliders};
 
 /// How often a particle may bounce in a step; what is left of the step then is lost to it.
 const CONTACTS: usize = 4;
@@ -17,7 +17,7 @@ const TOUCH: f32 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Forces {
     /// Unit: m/s².
-    pub(super) gravity: Vec3,
+    pub(super) gravity: Vec3A,
     /// Unit: 1/s.
     pub(super) drag: f32,
 }
@@ -28,44 +28,48 @@ pub(super) struct Flight {
     decay: f32,
     drift: f32,
     fall: f32,
-    gravity: Vec3,
+    gravity: Vec3A,
 }
 
 impl Forces {
     /// Flight for `time` (s), from v' = g − drag·v.
     #[inline]
     pub(super) fn over(&self, time: f32) -> Flight {
-        let gravity = self.gravity;
-        let resistance = self.drag * time;
-        // The exact terms lose their digits here; the series is as good.
-        if resistance < 1e-5 {
-            return Flight {
-                decay: 1.0 - resistance,
-                drift: time * (1.0 - resistance / 2.0),
-                fall: time * time * (0.5 - resistance / 6.0),
-                gravity,
-            };
-        }
-        let (drag, time) = (f64::from(self.drag), f64::from(time));
-        let lost = -(-drag * time).exp_m1();
-        let drift = lost / drag;
+        let r = self.drag * time;
+        // (exp(−r) − 1 + r) / r², from which the others follow. The exact form loses its digits for
+        // small r; the series is right to the last one there, and far faster.
+        let second = if r < 0.5 {
+            const SERIES: [f32; 7] = [
+                1.0 / 40_320.0,
+                -1.0 / 5040.0,
+                1.0 / 720.0,
+                -1.0 / 120.0,
+                1.0 / 24.0,
+                -1.0 / 6.0,
+                0.5,
+            ];
+            SERIES.iter().fold(0.0, |sum, term| sum * r + term)
+        } else {
+            ((-r).exp_m1() + r) / (r * r)
+        };
+        let first = 1.0 - r * second;
         Flight {
-            decay: (1.0 - lost) as f32,
-            drift: drift as f32,
-            fall: ((time - drift) / drag) as f32,
-            gravity,
+            decay: 1.0 - r * first,
+            drift: time * first,
+            fall: time * time * second,
+            gravity: self.gravity,
         }
     }
 }
 
 impl Flight {
     #[inline]
-    pub(super) fn position(&self, position: Vec3, velocity: Vec3) -> Vec3 {
+    pub(super) fn position(&self, position: Vec3A, velocity: Vec3A) -> Vec3A {
         position + velocity * self.drift + self.gravity * self.fall
     }
 
     #[inline]
-    pub(super) fn velocity(&self, velocity: Vec3) -> Vec3 {
+    pub(super) fn velocity(&self, velocity: Vec3A) -> Vec3A {
         velocity * self.decay + self.gravity * self.drift
     }
 }
@@ -76,7 +80,7 @@ pub(super) struct Step<'a> {
     pub(super) forces: Forces,
     /// Unit: s, > 0.
     pub(super) seconds: f32,
-    pub(super) colliders: &'a [Collider],
+    pub(super) colliders: &'a Colliders,
     /// Of the particles, in the world. Unit: m.
     pub(super) radius: f32,
 }
@@ -88,11 +92,11 @@ struct Contact<'a> {
     /// Of the way there.
     part: f32,
     /// The particle's centre.
-    point: Vec3,
+    point: Vec3A,
     /// Out of the collider.
-    normal: Vec3,
+    normal: Vec3A,
     /// The collider's own velocity there.
-    velocity: Vec3,
+    velocity: Vec3A,
 }
 
 impl Step<'_> {
@@ -100,15 +104,14 @@ impl Step<'_> {
     #[inline]
     pub(super) fn advance(
         &self,
-        position: &mut Vec3,
-        velocity: &mut Vec3,
+        position: &mut Vec3A,
+        velocity: &mut Vec3A,
         flight: &Flight,
         time: f32,
     ) {
         let end = flight.position(*position, *velocity);
-        let is_near = |collider: &Collider| collider.is_near(*position, end, self.radius);
-        if self.colliders.iter().any(is_near) {
-            self.collide(position, velocity, time);
+        if self.colliders.any_near(*position, end, self.radius) {
+            self.collide(position, velocity, *flight, time);
         } else {
             *velocity = flight.velocity(*velocity);
             *position = end;
@@ -116,9 +119,17 @@ impl Step<'_> {
     }
 
     /// The same where something may be in the way.
-    fn collide(&self, position: &mut Vec3, velocity: &mut Vec3, mut time: f32) {
+    fn collide(
+        &self,
+        position: &mut Vec3A,
+        velocity: &mut Vec3A,
+        mut flight: Flight,
+        mut time: f32,
+    ) {
+        if self.rests(*position, *velocity) {
+            return;
+        }
         for _ in 0..CONTACTS {
-            let flight = self.forces.over(time);
             let end = flight.position(*position, *velocity);
             let Some(contact) = self.first_contact(*position, end, time, None) else {
                 *velocity = flight.velocity(*velocity);
@@ -130,31 +141,61 @@ impl Step<'_> {
                 self.slide(&contact, position, velocity, time);
                 break;
             }
+            flight = self.forces.over(time);
         }
         self.push_out(position, velocity);
+    }
+
+    /// Whether a particle lies still on something that holds it, with nothing near that moves: then
+    /// it stays where it is.
+    fn rests(&self, position: Vec3A, velocity: Vec3A) -> bool {
+        if velocity != Vec3A::ZERO {
+            return false;
+        }
+        let mut is_held = false;
+        for collider in self.colliders.list() {
+            if !collider.is_near(position, position, self.radius) {
+                continue;
+            }
+            if collider.moves() {
+                return false;
+            }
+            let (distance, normal) = collider.solid.distance(collider.to_local(1.0, position));
+            let normal = collider.turn(1.0, normal);
+            let weight = -self.forces.gravity.dot(normal);
+            let pull = self.forces.gravity + normal * weight;
+            let gap = distance - self.radius;
+            if gap < 0.0 {
+                return false;
+            }
+            is_held |= gap <= self.tolerance(position)
+                && weight > 0.0
+                && pull.length_squared() <= (collider.friction * weight).powi(2);
+        }
+        is_held
     }
 
     /// The first collider that a particle meets on its straight way to `end`, which takes the last
     /// `time` seconds of the step.
     fn first_contact(
         &self,
-        start: Vec3,
-        end: Vec3,
+        start: Vec3A,
+        end: Vec3A,
         time: f32,
         except: Option<&Collider>,
     ) -> Option<Contact<'_>> {
         let tolerance = self.tolerance(start);
         let begin = 1.0 - time / self.seconds;
         let mut first: Option<Contact<'_>> = None;
-        for collider in self.colliders {
+        for collider in self.colliders.list() {
             if except.is_some_and(|except| core::ptr::eq(except, collider))
                 || !collider.is_near(start, end, self.radius)
             {
                 continue;
             }
             // In the collider's space, which moves.
-            let from = collider.pose(begin).to_local(start);
-            let way = collider.pose(1.0).to_local(end) - from;
+            let from = collider.to_local(begin, start);
+            let way = collider.to_local(1.0, end) - from;
             let Some(part) = collider.solid.sweep(from, way, self.radius, tolerance) else {
                 continue;
             };
@@ -163,12 +204,12 @@ impl Step<'_> {
             }
             let point = from + part * way;
             let (_, normal) = collider.solid.distance(point);
-            let pose = collider.pose(begin + part * (1.0 - begin));
+            let then = begin + part * (1.0 - begin);
             first = Some(Contact {
                 collider,
                 part,
-                point: pose.to_world(point),
-                normal: pose.turn(normal),
+                point: collider.to_world(then, point),
+                normal: collider.turn(then, normal),
                 velocity: collider.way(point - self.radius * normal) / self.seconds,
             });
         }
@@ -180,10 +221,13 @@ impl Step<'_> {
     fn approach(
         &self,
         contact: &Contact,
-        position: &mut Vec3,
-        velocity: &mut Vec3,
+        position: &mut Vec3A,
+        velocity: &mut Vec3A,
         time: f32,
     ) -> f32 {
+        if contact.part == 0.0 {
+            return 0.0;
+        }
         let along_chord = contact.part * time;
         let mut needed = along_chord;
         let mut flight = self.forces.over(needed);
@@ -213,7 +257,7 @@ impl Step<'_> {
 
     /// Whether the particle leaves the collider again, with its velocity after that; else only what
     /// is along the surface is left of it.
-    fn bounce(&self, contact: &Contact, velocity: &mut Vec3) -> bool {
+    fn bounce(&self, contact: &Contact, velocity: &mut Vec3A) -> bool {
         let Contact {
             collider, normal, ..
         } = contact;
@@ -238,7 +282,7 @@ impl Step<'_> {
 
     /// Slides along the plane of contact for the last `time` seconds of the step, slowed down by
     /// friction, or rests.
-    fn slide(&self, contact: &Contact, position: &mut Vec3, velocity: &mut Vec3, time: f32) {
+    fn slide(&self, contact: &Contact, position: &mut Vec3A, velocity: &mut Vec3A, time: f32) {
         let Contact {
             collider, normal, ..
         } = contact;
@@ -251,7 +295,7 @@ impl Step<'_> {
         let before = *velocity - contact.velocity;
         let free = along.over(time).velocity(before);
         let after = less(free, friction * time);
-        let moving = if after == Vec3::ZERO {
+        let moving = if after == Vec3A::ZERO {
             // It stops on the way, slowed down evenly.
             let (speed, braking) = (before.length(), (free - before).length());
             let slowdown = if free.length() < speed {
@@ -277,38 +321,42 @@ impl Step<'_> {
 
     /// Pushes a particle out of what it is in at the end of the step: of what has been put over it,
     /// or what rounding has left.
-    fn push_out(&self, position: &mut Vec3, velocity: &mut Vec3) {
+    fn push_out(&self, position: &mut Vec3A, velocity: &mut Vec3A) {
         for _ in 0..2 {
-            for collider in self.colliders {
+            let mut is_pushed = false;
+            for collider in self.colliders.list() {
                 if !collider.is_near(*position, *position, self.radius) {
                     continue;
                 }
-                let pose = collider.pose(1.0);
-                let point = pose.to_local(*position);
+                let point = collider.to_local(1.0, *position);
                 let (distance, normal) = collider.solid.distance(point);
                 let depth = self.radius - distance;
                 if depth > 0.0 {
+                    is_pushed = true;
                     let own = collider.way(point - distance * normal) / self.seconds;
-                    let normal = pose.turn(normal);
+                    let normal = collider.turn(1.0, normal);
                     *position += depth * normal;
                     *velocity -= normal * normal.dot(*velocity - own).min(0.0);
                 }
+            }
+            if !is_pushed {
+                break;
             }
         }
     }
 
     /// What f32 can tell apart here, and a small part of the radius. Unit: m.
-    fn tolerance(&self, point: Vec3) -> f32 {
+    fn tolerance(&self, point: Vec3A) -> f32 {
         TOUCH * self.radius + 4.0 * f32::EPSILON * point.abs().max_element()
     }
 }
 
 /// A velocity slowed down by `speed`, to rest at most.
-fn less(velocity: Vec3, speed: f32) -> Vec3 {
+fn less(velocity: Vec3A, speed: f32) -> Vec3A {
     let length = velocity.length();
     if length > speed {
         velocity * (1.0 - speed / length)
     } else {
-        Vec3::ZERO
+        Vec3A::ZERO
     }
 }

@@ -1,11 +1,14 @@
 //! The particles of an emitter, and the systems that let them out and move them.
 
-use bevy::{math::Affine3A, prelude::*};
+use bevy::{
+    math::{Affine3A, Vec3A},
+    prelude::*,
+};
 use rayon::prelude::*;
 
 use super::{
     EmitterBounds, EmitterError, ExternalMotion, ParticleCollider, ParticleEmitter,
-    colliders::{Collider, ColliderPath, gather},
+    colliders::{ColliderPath, Colliders},
     emission::{Birth, Emission},
     motion::{Forces, Step},
     step,
@@ -149,6 +152,7 @@ impl Chunk<'_> {
     ) -> bool {
         let step = self.step;
         let whole = step.forces.over(step.seconds);
+        let [min, max] = [self.bounds.min, self.bounds.max].map(Vec3A::from);
         let mut any_dead = false;
         for (((position, velocity), age), local) in
             positions.iter_mut().zip(velocities).zip(ages).zip(local)
@@ -160,16 +164,17 @@ impl Chunk<'_> {
                 any_dead = true;
                 continue;
             }
+            let (mut place, mut speed) = (Vec3A::from(*position), Vec3A::from(*velocity));
             if is_new {
                 let flight = step.forces.over(*age);
-                step.advance(position, velocity, &flight, *age);
+                step.advance(&mut place, &mut speed, &flight, *age);
             } else {
-                step.advance(position, velocity, &whole, step.seconds);
+                step.advance(&mut place, &mut speed, &whole, step.seconds);
             }
-            *local = self.local_from_world.transform_point3(*position);
+            let here = self.local_from_world.transform_point3a(place);
+            (*position, *velocity, *local) = (place.into(), speed.into(), here.into());
             // Neither is what is not a number.
-            let is_within =
-                local.cmpge(self.bounds.min).all() && local.cmple(self.bounds.max).all();
+            let is_within = (here.cmpge(min) & here.cmple(max)).all();
             if !is_within {
                 *age = DEAD;
                 any_dead = true;
@@ -219,12 +224,12 @@ pub(super) fn simulate(
         Without<ExternalMotion>,
     >,
     mut colliders: Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
-    mut list: Local<Vec<Collider>>,
+    mut list: Local<Colliders>,
     mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
-    gather(&mut colliders, &mut list);
+    list.gather(&mut colliders);
     for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
         let emitter = emitter.clamped();
         if fluid.radius != emitter.particle_radius {
@@ -261,7 +266,7 @@ pub(super) fn simulate(
         let scale = world_from_local.matrix3.determinant().abs().cbrt();
         let step = Step {
             forces: Forces {
-                gravity: emitter.gravity,
+                gravity: emitter.gravity.into(),
                 drag: emitter.drag,
             },
             seconds,

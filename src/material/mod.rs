@@ -7,7 +7,7 @@ use bevy::prelude::*;
 pub use check::MaterialError;
 pub(crate) use check::plugin;
 
-use crate::medium::Medium;
+use crate::{medium::Medium, range::SettingRange};
 
 /// The optical properties of a fluid. Fluids of a view whose materials are equal form one body:
 /// they merge on screen, unless one of another material lies between them.
@@ -18,11 +18,13 @@ use crate::medium::Medium;
 pub struct FluidMaterial {
     /// Refractive index relative to air. Range 0.2..=5, default 1.333 (water).
     /// Higher: rays bend more and more light is reflected; 1: neither, as in smoke and fire.
+    #[reflect(@SettingRange::new(0.2, 5.0))]
     pub refractive_index: f32,
     /// What is inside.
     pub medium: Medium,
     /// Perceptual roughness of the surface for the highlights of lights. Range 0.03..=1,
     /// default 0.1. Higher: wider, dimmer highlights. Refractions stay sharp.
+    #[reflect(@SettingRange::new(0.03, 1.0))]
     pub perceptual_roughness: f32,
     /// How the length of a ray's way through a fluid of refractive index 1 is found. Others
     /// ignore it. Default: [`Thickness::Layers`].
@@ -44,6 +46,7 @@ pub enum Thickness {
         /// How far a particle thins out towards its rim: its density is `(1 − q²)^softness` over
         /// the distance q from its centre, relative to the splat. Range 0..=8, default 1.
         /// Higher: softer puffs; 0: even balls with a sharp rim.
+        #[reflect(@SettingRange::new(0.0, 8.0))]
         softness: f32,
     },
 }

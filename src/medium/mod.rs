@@ -10,6 +10,8 @@ use bevy::prelude::*;
 
 pub use error::MediumError;
 
+use crate::range::SettingRange;
+
 /// Extinction (1/m) beyond which nothing differs. GPUs take powers of 2, and f32's largest numbers
 /// times log₂ e are infinite, which over no distance is not a number.
 const DENSEST: f32 = 1e30;
@@ -33,12 +35,14 @@ const DENSEST: f32 = 1e30;
 pub struct Medium {
     /// How densely the medium is filled with matter that scatters light evenly to all sides
     /// (`α_D`). Unit: 1/m, range 0.., default 0. Higher: more like milk.
+    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
     pub scattering_density: f32,
     /// The colour of the scattering matter in white light (`C_D`), linear, each channel 0..=1,
     /// default white. What it does not scatter it absorbs.
     pub scattering_color: LinearRgba,
     /// How densely the medium is filled with absorbing matter (`α_A`). Unit: 1/m, range 0..,
     /// default 0. Higher: light fades over a shorter way.
+    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
     pub absorption_density: f32,
     /// The colour that the absorbing matter lets pass (`C_A`), linear, each channel 0..=1, default
     /// white (nothing is absorbed).
@@ -46,6 +50,7 @@ pub struct Medium {
     /// What the medium itself sends (`C_E`). Unit: cd/m² per metre of depth, each channel 0..,
     /// default black. Higher: brighter; with Bevy's default exposure white begins at some
     /// 1000 cd/m².
+    #[reflect(@SettingRange::new(0.0, 1e5).unit("cd/m³").logarithmic().open())]
     pub emission: LinearRgba,
 }
 

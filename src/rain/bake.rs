@@ -20,9 +20,10 @@ use bevy::{
 };
 
 use super::{
-    classes::{CLASSES, FINE},
+    densities::DENSITIES,
+    drops::mean_speed,
     settings::{Rain, RainStreaks},
-    streaks::{HEIGHT, LAYERS, MIP_LEVELS, StreakClass, StreakInput, Streaks, WIDTH, bake},
+    streaks::{HEIGHT, MIP_LEVELS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
 
 /// How much of the textures is drawn, 0 to 1.
@@ -48,14 +49,11 @@ pub struct BakedStreaks {
 pub(crate) struct ReadyStreaks {
     pub(crate) image: Handle<Image>,
     pub(crate) input: StreakInput,
-    pub(crate) classes: [StreakClass; CLASSES],
-}
-
-impl ReadyStreaks {
-    /// The speed about which the classes' speeds lie. Unit: m/s.
-    pub(crate) fn mean_speed(&self) -> f64 {
-        self.classes[FINE].speed
-    }
+    /// See [`Streaks`].
+    pub(crate) scale: f32,
+    pub(crate) extinction: [f64; DENSITIES],
+    /// At which the drops of the textures fall together. Unit: m/s.
+    pub(crate) speed: f64,
 }
 
 struct RunningBake {
@@ -120,7 +118,7 @@ pub(crate) fn bake_streaks(
     } else {
         check_ready(&mut running.task)
     };
-    let done = running.done.load(Ordering::Relaxed) as f64 / LAYERS as f64;
+    let done = running.done.load(Ordering::Relaxed) as f64 / VARIANTS as f64;
     diagnostics.add_measurement(&BAKE_PROGRESS, || done);
     let Some(baked) = finished else {
         streaks.running = Some(running);
@@ -128,9 +126,11 @@ pub(crate) fn bake_streaks(
     };
     diagnostics.add_measurement(&BAKE_TIME, || running.start.elapsed().as_secs_f64() * 1e3);
     streaks.ready = Some(ReadyStreaks {
-        classes: baked.classes,
         image: images.add(image(baked.texels)),
         input: running.input,
+        scale: baked.scale,
+        extinction: baked.extinction,
+        speed: mean_speed(running.input.law),
     });
 }
 
@@ -160,7 +160,7 @@ fn image(texels: Vec<u8>) -> Image {
         Extent3d {
             width: WIDTH as u32,
             height: HEIGHT as u32,
-            depth_or_array_layers: LAYERS as u32,
+            depth_or_array_layers: VARIANTS as u32,
         },
         TextureDimension::D2,
         TextureFormat::Rgba8Unorm,

@@ -1,21 +1,29 @@
 //! How far drops have fallen.
 
-use bevy::{math::DVec2, prelude::*};
+use bevy::{
+    math::{DVec2, Vec2},
+    prelude::*,
+};
 
-use super::{bake::BakedStreaks, classes::CLASSES, settings::Rain};
+use super::{bake::BakedStreaks, settings::Rain};
 
-/// Where a camera moves this far up or down, the height is changed about which wind shears drops.
+/// Where a camera moves this far up or down, the height is changed about which columns lean.
 /// Unit: m.
 const REACH: f64 = 32.0;
+
+/// After so long drops one by one begin anew, so that 32-bit floats can follow them. Unit: s.
+const PERIOD: f64 = 256.0;
 
 /// The state of a camera's rain. It moves with `Time`, and so that a change of settings or a jump of
 /// the camera never makes drops jump that were in sight.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainClock {
-    /// How far each class has fallen. Unit: m.
-    pub(crate) fallen: [f64; CLASSES],
-    /// Unit: s.
+    /// How far the drops of the textures have fallen. Unit: m.
+    pub(crate) fallen: f64,
+    /// For how long drops one by one have fallen, and how far the air has gone in that time.
+    /// Unit: s, m.
     pub(crate) seconds: f64,
+    pub(crate) drift: DVec2,
     /// How far drops of mean speed go sideways (x, z) while they fall a metre.
     pub(crate) lean: Vec2,
     /// Where columns of drops stand at `height`, on top of their places in the lattice. Unit: m.
@@ -25,19 +33,15 @@ pub struct RainClock {
 }
 
 impl RainClock {
-    pub(crate) fn advance(
-        &mut self,
-        seconds: f64,
-        wind: Vec2,
-        speeds: [f64; CLASSES],
-        mean_speed: f64,
-        camera_height: f64,
-    ) {
+    /// `speed` is the drops' mean speed.
+    pub(crate) fn advance(&mut self, seconds: f64, wind: Vec2, speed: f64, camera_height: f64) {
+        self.fallen += speed * seconds;
         self.seconds += seconds;
-        for (fallen, speed) in self.fallen.iter_mut().zip(speeds) {
-            *fallen += speed * seconds;
+        self.drift += wind.as_dvec2() * seconds;
+        if self.seconds > PERIOD {
+            (self.seconds, self.drift) = default();
         }
-        let lean = wind / mean_speed.max(0.1) as f32;
+        let lean = wind / speed.max(0.1) as f32;
         if (camera_height - self.height).abs() > REACH && camera_height.is_finite() {
             self.anchor -= self.lean.as_dvec2() * (camera_height - self.height);
             self.height = camera_height;
@@ -57,19 +61,8 @@ pub(crate) fn advance_clocks(
         return;
     };
     for (rain, transform, mut clock) in &mut cameras {
-        let (rain, sane) = rain.sane();
-        if !sane {
-            bevy::utils::once!(warn!(
-                "a `Rain` has settings out of their range: they are clamped"
-            ));
-        }
-        clock.advance(
-            time.delta_secs_f64(),
-            rain.wind,
-            ready.classes.map(|class| class.speed),
-            ready.mean_speed(),
-            f64::from(transform.translation().y),
-        );
+        let (wind, height) = (rain.clamped().wind, transform.translation().y);
+        clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }
 
@@ -82,15 +75,36 @@ mod tests {
         clock.anchor - clock.lean.as_dvec2() * (height - clock.height)
     }
 
+    /// Where a drop of some speed is that began at the origin: in its column, which stands still at
+    /// any height, and off it (see `drops.wgsl`).
+    fn drop_place(clock: &RainClock, speed: f64, mean: f64) -> DVec2 {
+        place(clock, -speed * clock.seconds) + clock.drift * (1.0 - speed / mean)
+    }
+
     #[test]
-    fn drops_fall_at_their_own_speed() {
+    fn drops_fall_at_the_mean_speed() {
         let mut clock = RainClock::default();
-        let speeds = core::array::from_fn(|i| 1.0 + i as f64);
         for _ in 0..60 {
-            clock.advance(1.0 / 60.0, Vec2::ZERO, speeds, 5.0, 0.0);
+            clock.advance(1.0 / 60.0, Vec2::ZERO, 5.0, 0.0);
         }
-        for (fallen, speed) in clock.fallen.iter().zip(speeds) {
-            assert!((fallen - speed).abs() < 1e-9);
+        assert!((clock.fallen - 5.0).abs() < 1e-9);
+    }
+
+    /// However fast a drop falls, the wind takes it along as fast as itself.
+    #[test]
+    fn drops_drift_with_the_wind() {
+        let (wind, mean) = (vec2(3.0, -1.0), 5.0);
+        for speed in [0.5, 5.0, 9.0] {
+            let mut clock = RainClock::default();
+            clock.advance(0.0, wind, mean, 0.0);
+            for _ in 0..30 {
+                clock.advance(0.1, wind, mean, 0.0);
+            }
+            let went = drop_place(&clock, speed, mean);
+            assert!(
+                (went - 3.0 * wind.as_dvec2()).length() < 1e-5,
+                "{speed}: {went}"
+            );
         }
     }
 
@@ -101,10 +115,10 @@ mod tests {
             (20.0, [vec2(3.0, 0.0), vec2(-4.0, 2.0)]),
             (900.0, [vec2(1.0, 1.0), vec2(0.0, 5.0)]),
         ] {
-            clock.advance(0.0, clock.lean * 5.0, [1.0; CLASSES], 5.0, height);
+            clock.advance(0.0, clock.lean * 5.0, 5.0, height);
             let before = place(&clock, height);
             for wind in winds {
-                clock.advance(0.0, wind, [1.0; CLASSES], 5.0, height);
+                clock.advance(0.0, wind, 5.0, height);
                 assert!((place(&clock, height) - before).length() < 1e-4);
             }
         }
@@ -113,9 +127,9 @@ mod tests {
     #[test]
     fn a_jump_of_the_camera_moves_no_column() {
         let mut clock = RainClock::default();
-        clock.advance(0.0, vec2(5.0, -2.0), [1.0; CLASSES], 5.0, 0.0);
+        clock.advance(0.0, vec2(5.0, -2.0), 5.0, 0.0);
         let before = place(&clock, 1000.0);
-        clock.advance(0.0, vec2(5.0, -2.0), [1.0; CLASSES], 5.0, 1000.0);
+        clock.advance(0.0, vec2(5.0, -2.0), 5.0, 1000.0);
         assert!((place(&clock, 1000.0) - before).length() < 1e-4);
     }
 }

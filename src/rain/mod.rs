@@ -21,19 +21,21 @@
 //!
 //! - A streak's length follows the exposure time, its opacity keeps the light a drop takes
 //!   ([`drops::extinction`]) whatever the exposure.
-//! - A column of falling billboards is one standing billboard whose textures fall, each at its own
-//!   speed: all diameters in one draw of one layer.
-//! - Voxels are half a metre wide near the eye, and from 2 m on twice as wide each time the distance
-//!   doubles: the cost grows with the logarithm of the distance. There, where a streak is a pixel
-//!   wide, drops of all diameters fall together.
+//! - Within 2 m drops are drawn one by one, each at its own place and speed: there streaks are told
+//!   apart. That is both truer and cheaper than many layers of small voxels.
+//! - A column of falling billboards is one standing billboard whose texture falls: all drops in one
+//!   draw of one layer.
+//! - Voxels are two metres wide, and from 6 m on twice as wide each time the distance doubles: the
+//!   cost grows with the logarithm of the distance.
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
-//!   depth, are mixed from one texel.
+//!   depth, are mixed from one texel, and pixels vary over time as they should.
 //!
 //! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs.
 
 mod bake;
-pub mod classes;
+mod check;
 mod clock;
+pub mod densities;
 mod draw;
 pub mod drops;
 pub mod phase;
@@ -47,6 +49,7 @@ use bevy::{
 
 pub use self::{
     bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
+    check::RainError,
     clock::RainClock,
     draw::RainQuads,
     drops::DragLaw,
@@ -63,14 +66,17 @@ pub struct RainPlugin {
 
 impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RainStreaks>()
+        app.register_type::<Rain>()
+            .register_type::<RainShelter>()
+            .register_type::<RainStreaks>()
+            .init_resource::<RainStreaks>()
             .init_resource::<BakedStreaks>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
             .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
             .add_systems(
                 PostUpdate,
-                (bake::bake_streaks, clock::advance_clocks)
+                (check::check_rain, bake::bake_streaks, clock::advance_clocks)
                     .chain()
                     .after(TransformSystems::Propagate),
             )

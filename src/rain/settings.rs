@@ -2,13 +2,11 @@
 
 use bevy::{camera::Hdr, prelude::*};
 
-use super::{
-    clock::RainClock,
-    drops::DragLaw,
-    streaks::{LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
-};
+use super::{check::clamped_exposure, clock::RainClock, drops::DragLaw};
+use crate::range::SettingRange;
 
-/// Makes a camera see rain. Values that make no sense are clamped and said once.
+/// Makes a camera see rain. Values that make no sense are named in the log
+/// once, and clamped.
 ///
 /// Cameras with equal settings that began together see the same drops.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -17,19 +15,24 @@ use super::{
 pub struct Rain {
     /// How much it rains. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame;
     /// at 0 nothing is done.
+    #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic())]
     pub rate: f32,
     /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
     /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
     /// grows with its logarithm beyond 2 m.
+    #[reflect(@SettingRange::new(1.0, 100.0).unit("m").logarithmic())]
     pub distance: f32,
     /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
     /// here. Unit: m, range 0..=100,000, default 500.
+    #[reflect(@SettingRange::new(0.0, 1e5).unit("m").logarithmic())]
     pub extent: f32,
     /// Velocity of the air along x and z: drops drift with it. Unit: m/s, range −30..=30 each,
     /// default 0.
+    #[reflect(@SettingRange::new(-30.0, 30.0).unit("m/s"))]
     pub wind: Vec2,
     /// How bright drops are. Range 0..=100, default 1, which is what water scatters. Higher:
     /// streaks that show on a display of small range.
+    #[reflect(@SettingRange::new(0.0, 100.0).logarithmic())]
     pub brightness: f32,
     /// How rain is drawn. Default [`RainMethod::Streaks`].
     pub method: RainMethod,
@@ -55,31 +58,6 @@ impl Rain {
             brightness: 1.0,
             method: RainMethod::Streaks,
         }
-    }
-
-    /// These settings within their ranges, and whether all were.
-    pub(crate) fn sane(&self) -> (Self, bool) {
-        let sane = Self {
-            rate: within(self.rate, 0.0, 200.0, 0.0),
-            distance: within(self.distance, 1.0, 100.0, 5.0),
-            extent: within(self.extent, 0.0, 1e5, 500.0),
-            wind: vec2(
-                within(self.wind.x, -30.0, 30.0, 0.0),
-                within(self.wind.y, -30.0, 30.0, 0.0),
-            ),
-            brightness: within(self.brightness, 0.0, 100.0, 1.0),
-            method: self.method,
-        };
-        (sane, sane == *self)
-    }
-}
-
-/// `value` clamped, or `fallback` for what is not a number.
-fn within(value: f32, low: f32, high: f32, fallback: f32) -> f32 {
-    if value.is_nan() {
-        fallback
-    } else {
-        value.clamp(low, high)
     }
 }
 
@@ -124,7 +102,9 @@ pub enum Exposure {
     #[default]
     FrameTime,
     /// Unit: s, range 1/10,000..=1/10.
-    Seconds(f32),
+    Seconds(
+        #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().start(1.0 / 60.0))] f32,
+    ),
 }
 
 /// Before frames have taken any time. Unit: s.
@@ -135,15 +115,10 @@ impl Exposure {
     /// of `current` are there (if any are).
     pub(crate) fn seconds(self, frame: Option<f32>, current: Option<f32>) -> f32 {
         match self {
-            Self::Seconds(seconds) => within(
-                seconds,
-                SHORTEST_EXPOSURE,
-                LONGEST_EXPOSURE,
-                DEFAULT_EXPOSURE,
-            ),
+            Self::Seconds(seconds) => clamped_exposure(seconds),
             Self::FrameTime => {
                 let wanted = frame.or(current).unwrap_or(DEFAULT_EXPOSURE);
-                let wanted = within(wanted, 1.0 / 240.0, 1.0 / 30.0, DEFAULT_EXPOSURE);
+                let wanted = wanted.clamp(1.0 / 240.0, 1.0 / 30.0);
                 match current {
                     Some(current) if (0.8..=1.25).contains(&(wanted / current)) => current,
                     _ => wanted,
@@ -161,6 +136,7 @@ impl Exposure {
 #[require(Transform)]
 pub struct RainShelter {
     /// Half of the box's sides in the entity's space. Default 1 each.
+    #[reflect(@SettingRange::new(0.0, 100.0).unit("m").open())]
     pub half_size: Vec3,
 }
 
@@ -177,43 +153,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn presets_are_sane() {
-        for (rain, rate) in [
-            (Rain::DRIZZLE, 1.0),
-            (Rain::RAIN, 5.0),
-            (Rain::HEAVY, 20.0),
-            (Rain::CLOUDBURST, 75.0),
-        ] {
-            assert_eq!(rain.sane(), (rain, true));
-            assert_eq!(rain.rate, rate);
-        }
-    }
-
-    #[test]
-    fn what_makes_no_sense_is_clamped() {
-        for (rate, expected) in [
-            (-1.0, 0.0),
-            (f32::NAN, 0.0),
-            (1e6, 200.0),
-            (f32::INFINITY, 200.0),
-        ] {
-            let (sane, was) = Rain::falling(rate).sane();
-            assert_eq!((sane.rate, was), (expected, false));
-        }
-        let odd = Rain {
-            distance: f32::NEG_INFINITY,
-            wind: vec2(f32::NAN, 1e9),
-            brightness: -3.0,
-            ..Rain::RAIN
-        };
-        let (sane, _) = odd.sane();
-        assert_eq!(
-            (sane.distance, sane.wind, sane.brightness),
-            (1.0, vec2(0.0, 30.0), 0.0)
-        );
-    }
-
-    #[test]
     fn exposure_follows_frames_but_not_their_jitter() {
         let auto = Exposure::FrameTime;
         assert_eq!(auto.seconds(None, None), DEFAULT_EXPOSURE);
@@ -221,10 +160,6 @@ mod tests {
         assert_eq!(auto.seconds(Some(0.019), Some(1.0 / 60.0)), 1.0 / 60.0);
         assert_eq!(auto.seconds(Some(0.025), Some(1.0 / 60.0)), 0.025);
         assert_eq!(auto.seconds(None, Some(0.02)), 0.02);
-        assert_eq!(
-            Exposure::Seconds(f32::NAN).seconds(Some(0.01), None),
-            DEFAULT_EXPOSURE
-        );
-        assert_eq!(Exposure::Seconds(9.0).seconds(None, None), LONGEST_EXPOSURE);
+        assert_eq!(Exposure::Seconds(0.002).seconds(Some(0.01), None), 0.002);
     }
 }

@@ -1,9 +1,9 @@
 //! Textures of the streaks that drops in a cubic metre draw while the shutter is open.
 //!
-//! Seen from the side in parallel projection. One layer per class of diameters and variant; the four
-//! channels of a layer are four densities of drops, each holding the drops of the one before it and
-//! more. Layers tile: what leaves one on one side enters on the other, and streaks across the upper
-//! and lower border are the same in all variants of a class, so that any two may stand on another.
+//! Seen from the side in parallel projection. One layer per variant; the four channels of a layer are
+//! four densities of drops, each holding the drops of the one before it and more. Layers tile: what
+//! leaves one on one side enters on the other, and streaks across the upper and lower border are the
+//! same in all variants, so that any two may stand on another.
 //!
 //! A drop of diameter D that falls at v covers a point of its way for D/v on average times π/4 for
 //! its roundness, of an exposure T: opacity π/4 · D/(vT), over a width of D and a length of vT. That
@@ -16,19 +16,18 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use super::{
-    classes::{BAKED_RATES, CLASSES, Class, DENSITIES},
-    drops::{DragLaw, sample_diameter, slope},
+    densities::{BAKED_RATES, DENSITIES},
+    drops::{DragLaw, LARGEST, SMALLEST, count, sample_diameter, slope},
 };
 use crate::random::Random;
 
-/// Textures per class. Each has its own drops, so that repetition does not show.
-pub const VARIANTS: usize = 4;
-/// Layers of the array texture; class by class.
-pub const LAYERS: usize = CLASSES * VARIANTS;
+/// Layers of the array texture. Each has its own drops, so that repetition does not show.
+pub const VARIANTS: usize = 8;
 /// Texels along a metre across the fall. A power of two.
 pub const WIDTH: usize = 512;
-/// Texels along a metre of fall: fewer, for streaks have no detail that way. A power of two.
-pub const HEIGHT: usize = 256;
+/// Texels along a metre of fall. A power of two. With fewer, mip levels for pixels that are as wide
+/// as they are high would blur streaks along the fall, and pixels vary too little.
+pub const HEIGHT: usize = 512;
 /// Unit: s. Longer ones would have streaks leave their cube.
 pub const LONGEST_EXPOSURE: f32 = 0.1;
 /// Unit: s.
@@ -51,19 +50,10 @@ pub struct Streaks {
     /// Unorm texels of four channels: layer by layer, each with all its mip levels, rows from the
     /// top.
     pub texels: Vec<u8>,
-    /// What is known of each class.
-    pub classes: [StreakClass; CLASSES],
-}
-
-/// How to read the layers of a class.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StreakClass {
     /// The opacity of a texel of 1.
     pub scale: f32,
     /// Mean opacity of each density: the cross sections of its drops per m³. Unit: 1/m.
     pub extinction: [f64; DENSITIES],
-    /// At which its drops fall together. Unit: m/s.
-    pub speed: f64,
 }
 
 /// How many mip levels a layer has.
@@ -98,27 +88,7 @@ struct Streak {
 
 /// Draws all textures, in parallel; `done` counts finished layers.
 pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
-    let baked: Vec<(StreakClass, Vec<u8>)> = Class::all()
-        .par_iter()
-        .enumerate()
-        .map(|(index, class)| bake_class(input, index, class, done))
-        .collect();
-    let mut classes = [StreakClass::default(); CLASSES];
-    let mut texels = Vec::with_capacity(baked.iter().map(|(_, texels)| texels.len()).sum());
-    for (slot, (class, layers)) in classes.iter_mut().zip(&baked) {
-        *slot = *class;
-        texels.extend_from_slice(layers);
-    }
-    Streaks { texels, classes }
-}
-
-fn bake_class(
-    input: &StreakInput,
-    index: usize,
-    class: &Class,
-    done: &AtomicU32,
-) -> (StreakClass, Vec<u8>) {
-    let variants = sample_streaks(input, index, class);
+    let variants = sample_streaks(input);
     let mut extinction = [0.0; DENSITIES];
     for streak in variants.iter().flatten() {
         for sum in &mut extinction[streak.density..] {
@@ -133,34 +103,32 @@ fn bake_class(
         .flatten()
         .copied()
         .fold(0.0, f32::max);
-    let texels = layers
+    let texels: Vec<Vec<u8>> = layers
         .into_par_iter()
-        .flat_map_iter(|layer| {
+        .map(|layer| {
             let texels = with_mips(layer, scale);
             done.fetch_add(1, Ordering::Relaxed);
             texels
         })
         .collect();
-    let class = StreakClass {
+    Streaks {
+        texels: texels.concat(),
         scale,
         extinction,
-        speed: class.speed(input.law),
-    };
-    (class, texels)
+    }
 }
 
-/// The drops of a class: a random number of them in each variant, as many in all variants together
-/// as there are on average.
-fn sample_streaks(input: &StreakInput, index: usize, class: &Class) -> [Vec<Streak>; VARIANTS] {
+/// The drops of each variant: a random number of them in each, as many in all together as there are
+/// on average.
+fn sample_streaks(input: &StreakInput) -> [Vec<Streak>; VARIANTS] {
     let exposure = f64::from(input.exposure.clamp(SHORTEST_EXPOSURE, LONGEST_EXPOSURE));
-    let (low, high) = class.drawn();
-    let mut random = Random::sequence(input.seed, index as u64);
+    let mut random = Random::new(input.seed);
     let mut variants: [Vec<Streak>; VARIANTS] = Default::default();
     let (mut before, mut rate_before) = (0.0, None);
     for (density, rate) in BAKED_RATES.into_iter().enumerate() {
-        let count = class.count(rate);
+        let count = count(rate, SMALLEST, LARGEST);
         for _ in 0..random.round((count - before) * VARIANTS as f64) {
-            let diameter = more_drops(rate, rate_before, low, high, &mut random);
+            let diameter = more_drops(rate, rate_before, &mut random);
             let streak = Streak {
                 x: random.next_f64(),
                 y: random.next_f64(),
@@ -181,9 +149,9 @@ fn sample_streaks(input: &StreakInput, index: usize, class: &Class) -> [Vec<Stre
 }
 
 /// The diameter of a drop that rain of a rate has and that of a lower rate has not.
-fn more_drops(rate: f64, lower: Option<f64>, low: f64, high: f64, random: &mut Random) -> f64 {
+fn more_drops(rate: f64, lower: Option<f64>, random: &mut Random) -> f64 {
     loop {
-        let diameter = sample_diameter(rate, low, high, random.next_f64());
+        let diameter = sample_diameter(rate, SMALLEST, LARGEST, random.next_f64());
         // n(lower) / n(rate): the share of such drops that were there before.
         let there = lower.map_or(0.0, |lower| ((slope(rate) - slope(lower)) * diameter).exp());
         if random.next_f64() >= there {

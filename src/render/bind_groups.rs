@@ -166,7 +166,6 @@ impl Sources<'_> {
                 &layers.bulk_normals.default_view,
                 &layers.spray.default_view,
                 &layers.spray_normals.default_view,
-                &self.placeholders.nearest,
                 &self.cube(body.cubemaps.diffuse).texture_view,
                 &layers
                     .thickness
@@ -208,17 +207,25 @@ impl Sources<'_> {
             .cache
             .get_bind_group_layout(&self.composite.debug_layout);
         let layers = &body.layers;
-        Some(self.device.create_bind_group(
-            "fluid_debug_view",
-            &layout,
-            &BindGroupEntries::sequential((
-                layers.bulk_view(),
-                &layers.bulk_normals.default_view,
-                &layers.spray.default_view,
-                &layers.spray_normals.default_view,
-                &layers.exits.default_view,
-                self.uniforms.depth_ranges.binding()?,
-            )),
-        ))
+        Some(
+            self.device.create_bind_group(
+                "fluid_debug_view",
+                &layout,
+                &BindGroupEntries::sequential((
+                    layers.bulk_view(),
+                    &layers.bulk_normals.default_view,
+                    &layers.spray.default_view,
+                    &layers.spray_normals.default_view,
+                    &layers.exits.default_view,
+                    self.uniforms.depth_ranges.binding()?,
+                    &layers
+                        .overdraw
+                        .as_ref()
+                        .or(layers.thickness.as_ref())
+                        .unwrap_or(&self.placeholders.layers)
+                        .default_view,
+                )),
+            ),
+        )
     }
 }

@@ -89,6 +89,19 @@ pub(crate) const MAX_BLEND: BlendState = {
     }
 };
 
+/// The sum of what is there and what is drawn.
+pub(crate) const SUM_BLEND: BlendState = {
+    let sum = BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Add,
+    };
+    BlendState {
+        color: sum,
+        alpha: sum,
+    }
+};
+
 /// The layer value for "nothing": `NO_FRONT`, `NO_BACK` of `types.wgsl`.
 pub(crate) const NO_LAYERS: [f32; 4] = [0.0, -2.0, 0.0, 0.0];
 

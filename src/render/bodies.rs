@@ -29,6 +29,7 @@ use super::{
     plan::{Plan, PlanInput, plan},
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
+    skipped::{Reporter, ViewReport},
     smooth::{SmoothGroups, SmoothSteps},
     support::{FluidSupport, Shortcuts},
 };
@@ -159,6 +160,7 @@ pub(crate) fn prepare_bodies(
     clear_color: Res<ClearColor>,
     support: Res<FluidSupport>,
     shortcuts: Res<Shortcuts>,
+    reporter: Reporter,
     placeholders: Res<Placeholders>,
     mut pipelines: Pipelines,
     mut textures: ResMut<TextureCache>,
@@ -168,6 +170,7 @@ pub(crate) fn prepare_bodies(
 ) {
     uniforms.bodies.clear();
     uniforms.depth_ranges.clear();
+    let mut report = reporter.begin();
     // Also of cameras that draw no fluids any more, or rest.
     for entity in &stale {
         commands.entity(entity).remove::<ViewBodies>();
@@ -211,6 +214,12 @@ pub(crate) fn prepare_bodies(
             exposure: camera.exposure,
         };
 
+        if let Some(views) = &mut report {
+            views.push(ViewReport {
+                camera: view.retained_view_entity.main_entity.id(),
+                bodies: Vec::new(),
+            });
+        }
         let mut bodies = Vec::new();
         let visible = fluids
             .iter()
@@ -235,7 +244,7 @@ pub(crate) fn prepare_bodies(
                 members.iter().map(|member| of(member.fluid)).sum::<u32>()
             };
             let radius = members.iter().map(|it| it.fluid.radius).fold(0.0, f32::max);
-            let planned = plan(&PlanInput {
+            let input = PlanInput {
                 in_view: scissor.is_some(),
                 near_plane_cuts: bounds.near_plane_cuts(&clip_from_eye),
                 bulk: count(|fluid| fluid.bulk),
@@ -245,8 +254,13 @@ pub(crate) fn prepare_bodies(
                 material: *material,
                 shortcuts: shortcuts.0,
                 settings: *settings,
-            });
-            let (Some(plan), Some(scissor)) = (planned, scissor) else {
+            };
+            if let Some(view) = report.as_mut().and_then(|views| views.last_mut()) {
+                let fluids = members.iter().map(|member| member.entity);
+                view.bodies
+                    .push(reporter.body(&input, fluids, scissor, viewport));
+            }
+            let (Some(plan), Some(scissor)) = (plan(&input), scissor) else {
                 continue;
             };
             let steps = SmoothSteps::new(&plan.smoothing);
@@ -269,6 +283,7 @@ pub(crate) fn prepare_bodies(
                     CompositePart::Whole
                 },
                 several,
+                accumulated: plan.accumulated && debug_view == Some(&FluidDebugView::Thickness),
             };
             let pipelines = pipelines.of(&plan, &steps, settings, &support, composite);
             let layers = Layers::new(
@@ -279,6 +294,7 @@ pub(crate) fn prepare_bodies(
                 &steps,
                 &support,
                 &placeholders.layers,
+                debug_view.copied(),
             );
             let depths = view_depths(&bounds, &view_from_eye);
             bodies.push(Body {
@@ -318,6 +334,7 @@ pub(crate) fn prepare_bodies(
             multisampled: msaa.samples() > 1,
         });
     }
+    reporter.end(report);
     uniforms.bodies.write_buffer(&device, &queue);
     uniforms.depth_ranges.write_buffer(&device, &queue);
 }

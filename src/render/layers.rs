@@ -16,7 +16,7 @@ use super::{
     support::{FluidSupport, LAYER_FORMAT},
 };
 
-use crate::settings::Smoothing;
+use crate::settings::{FluidDebugView, Smoothing};
 
 /// Front and back normals, octahedral, both towards the viewer.
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
@@ -49,6 +49,8 @@ pub struct Layers {
     pub(crate) exits: CachedTexture,
     /// The way through all particles, where it is summed up.
     pub(crate) thickness: Option<CachedTexture>,
+    /// How many splats are drawn, where that is to be seen.
+    pub(crate) overdraw: Option<CachedTexture>,
     /// Front and back, for adapters that cannot blend.
     pub(crate) depths: Option<[CachedTexture; 2]>,
 }
@@ -62,6 +64,7 @@ impl Layers {
         steps: &SmoothSteps,
         support: &FluidSupport,
         placeholder: &CachedTexture,
+        debug_view: Option<FluidDebugView>,
     ) -> Self {
         let mut texture = |label, format| view_texture(cache, device, label, size, format);
         let mut class = |there: bool, label, normals| {
@@ -101,6 +104,8 @@ impl Layers {
             thickness: plan
                 .accumulated
                 .then(|| texture("fluid_thickness", support.thickness_format)),
+            overdraw: (debug_view == Some(FluidDebugView::Overdraw))
+                .then(|| texture("fluid_overdraw", support.thickness_format)),
             depths: (!support.max_blend).then(|| {
                 [
                     texture("fluid_front_depth", DEPTH_FORMAT),
@@ -148,6 +153,12 @@ impl Layers {
     /// The way through all particles in m, where it is summed up.
     pub fn thickness(&self) -> Option<&Texture> {
         self.thickness.as_ref().map(|cached| &cached.texture)
+    }
+
+    /// How many splats are drawn at each pixel, where a camera has
+    /// [`FluidDebugView::Overdraw`].
+    pub fn overdraw(&self) -> Option<&Texture> {
+        self.overdraw.as_ref().map(|cached| &cached.texture)
     }
 
     pub(crate) fn bulk_view(&self) -> &TextureView {

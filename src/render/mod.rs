@@ -19,6 +19,7 @@ mod scene_depth;
 mod scene_textures;
 #[cfg(test)]
 mod shader_tests;
+mod skipped;
 mod smooth;
 mod splat;
 mod support;
@@ -49,6 +50,7 @@ pub use self::{
     gpu_types::SearchStatus,
     layers::Layers,
     plan::{MediumTerms, Plan, PlanInput, plan},
+    skipped::{BodyReport, PlanReports, Skipped, ViewReport, skipped},
     support::LayerBlending,
 };
 use crate::{
@@ -86,6 +88,7 @@ impl Plugin for FluidRenderPlugin {
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "functions.wgsl");
+        load_shader_library!(app, "straight.wgsl");
         load_shader_library!(app, "track.wgsl");
         load_shader_library!(app, "slopes.wgsl");
         load_shader_library!(app, "medium.wgsl");
@@ -110,16 +113,22 @@ impl Plugin for FluidRenderPlugin {
         embedded_asset!(app, "refract/refract.wgsl");
         embedded_asset!(app, "composite/composite.wgsl");
         embedded_asset!(app, "composite/debug_view.wgsl");
-        app.add_plugins((
-            ExtractComponentPlugin::<ScreenSpaceFluid>::default(),
-            ExtractComponentPlugin::<FluidDebugView>::default(),
-            SyncComponentPlugin::<FluidParticles>::default(),
-        ));
+        let reports = PlanReports::default();
+        app.insert_resource(reports.clone());
 
+        // What it syncs needs a renderer, if only to be despawned.
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_plugins((
+                ExtractComponentPlugin::<ScreenSpaceFluid>::default(),
+                ExtractComponentPlugin::<FluidDebugView>::default(),
+                SyncComponentPlugin::<FluidParticles>::default(),
+            ));
+        }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
         render_app
+            .insert_resource(reports)
             .insert_resource(support::WantedBlending(self.layer_blending))
             .insert_resource(support::Shortcuts(self.shortcuts))
             .init_resource::<extract::FluidLights>()
@@ -178,7 +187,9 @@ impl Plugin for FluidRenderPlugin {
                 (
                     (
                         scene_depth::scene_depth.in_set(FluidPasses::SceneDepth),
-                        splat::splat.in_set(FluidPasses::Splat),
+                        (splat::splat, splat::overdraw)
+                            .chain()
+                            .in_set(FluidPasses::Splat),
                         thickness::thickness.in_set(FluidPasses::Thickness),
                         smooth::smooth.in_set(FluidPasses::Smooth),
                         normals::normals.in_set(FluidPasses::Normals),

@@ -7,17 +7,16 @@
 @group(1) @binding(1) var environment_sampler: sampler;
 
 const PI: f32 = 3.14159265;
+const MAX_LIGHTS: u32 = 4u;
 
 // Exposed radiance from far away, along a direction in view space.
 fn environment(direction: vec3<f32>) -> vec3<f32> {
-    if body.environment_intensity <= 0.0 {
-        return body.clear_color;
-    }
     let world = (view.world_from_view * vec4(direction, 0.0)).xyz;
     let texel = textureSampleLevel(
         environment_map, environment_sampler, body.environment_from_world * world, 0.0,
     );
-    return texel.rgb * body.environment_intensity;
+    let seen = texel.rgb * body.environment_intensity;
+    return select(body.clear_color, seen, body.environment_intensity > 0.0);
 }
 
 struct Interface {
@@ -69,9 +68,11 @@ fn highlights(direction: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
     let a2 = alpha * alpha;
     let v = -direction;
     let nov = max(dot(n, v), 1e-4);
-    for (var i = 0u; i < body.light_count; i += 1u) {
+    for (var i = 0u; i < MAX_LIGHTS; i += 1u) {
         let light = body.lights[i];
-        let l = normalize((view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz);
+        let to_light = (view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz;
+        // Where there is none, all is zero.
+        let l = to_light * inverseSqrt(max(dot(to_light, to_light), 1e-20));
         let nol = dot(n, l);
         if nol <= 0.0 {
             continue;

@@ -12,16 +12,18 @@ use super::{
     plan::Plan,
     refract::{RefractKey, RefractPipeline},
     smooth::{SmoothPipeline, SmoothSteps},
-    splat::{SplatOutput, SplatPipeline, SplatPipelines},
+    splat::{SplatKey, SplatOutput, SplatPipeline, SplatPipelines},
     support::FluidSupport,
     thickness::ThicknessPipeline,
 };
-use crate::settings::{ScreenSpaceFluid, Smoothing};
+use crate::settings::{FluidDebugView, ScreenSpaceFluid, Smoothing};
 
 /// The pipelines of a body's passes.
 pub(crate) struct BodyPipelines {
     pub(crate) splat: SplatPipelines,
     pub(crate) thickness: Option<CachedRenderPipelineId>,
+    /// For the debug view that shows it.
+    pub(crate) overdraw: Option<CachedRenderPipelineId>,
     pub(crate) smooth: Vec<CachedRenderPipelineId>,
     pub(crate) bulk_normals: BulkNormals,
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
@@ -43,6 +45,7 @@ impl BodyPipelines {
         splat
             .iter()
             .chain(&self.thickness)
+            .chain(&self.overdraw)
             .chain(&self.smooth)
             .chain(self.bulk_normals.pipelines())
             .chain(&self.spray_normals)
@@ -71,8 +74,14 @@ pub(crate) struct Pipelines<'w> {
 }
 
 impl Pipelines<'_> {
-    fn splat(&mut self, output: SplatOutput) -> CachedRenderPipelineId {
-        self.splats.specialize(&self.cache, &self.splat, output)
+    /// Both forms are asked for at once, so that none has to be waited for when the near plane
+    /// comes into a body.
+    fn splat(&mut self, output: SplatOutput, cut: bool) -> CachedRenderPipelineId {
+        let [whole, any] = [false, true].map(|cut| {
+            let key = SplatKey { output, cut };
+            self.splats.specialize(&self.cache, &self.splat, key)
+        });
+        if cut { any } else { whole }
     }
 
     fn normals(&mut self, source: NormalSource) -> CachedRenderPipelineId {
@@ -95,15 +104,18 @@ impl Pipelines<'_> {
         composite: CompositeKey,
     ) -> BodyPipelines {
         let splat = if support.max_blend {
-            SplatPipelines::MaxBlend(self.splat(if plan.backs() {
+            let output = if plan.backs() {
                 SplatOutput::Layers
             } else {
                 SplatOutput::Fronts
-            }))
+            };
+            SplatPipelines::MaxBlend(self.splat(output, plan.cut))
         } else {
             SplatPipelines::DepthDraws {
-                front: self.splat(SplatOutput::FrontDepth),
-                back: plan.backs().then(|| self.splat(SplatOutput::BackDepth)),
+                front: self.splat(SplatOutput::FrontDepth, plan.cut),
+                back: plan
+                    .backs()
+                    .then(|| self.splat(SplatOutput::BackDepth, plan.cut)),
                 merge: self.splat.merge,
             }
         };
@@ -124,9 +136,13 @@ impl Pipelines<'_> {
             self.thicknesses
                 .specialize(&self.cache, &self.thickness, format)
         });
+        let counted = composite.debug_view == Some(FluidDebugView::Overdraw);
+        let overdraw =
+            counted.then(|| self.splat(SplatOutput::Count(support.thickness_format), plan.cut));
         BodyPipelines {
             splat,
             thickness,
+            overdraw,
             smooth: steps.pipelines(&self.cache, &mut self.smooths, &self.smooth),
             bulk_normals,
             spray_normals: (plan.spray && !plan.index_one)

@@ -40,6 +40,8 @@ pub struct Plan {
     pub spray: bool,
     /// Interior particles are drawn too. They are hidden unless rays start among them.
     pub interior: bool,
+    /// The near plane may cut splats, which then are met in view space.
+    pub cut: bool,
     /// How the bulk is smoothed.
     pub smoothing: Smoothing,
     /// How many interfaces a ray may cross.
@@ -120,6 +122,7 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
         bulk,
         spray,
         interior,
+        cut: input.near_plane_cuts,
         // What is summed up over the particles has no surface to smooth.
         smoothing: if bulk && !accumulated {
             input.settings.smoothing
@@ -286,6 +289,7 @@ mod tests {
             near_plane_cuts: true,
             ..POOL
         };
-        assert!(plan(&input).unwrap().interior);
+        assert!(plan(&input).unwrap().interior && plan(&input).unwrap().cut);
+        assert!(!plan(&POOL).unwrap().cut);
     }
 }

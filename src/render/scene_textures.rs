@@ -22,8 +22,6 @@ pub(crate) struct Placeholders {
     pub(crate) layers: CachedTexture,
     /// Smooth lookups that stop at the border.
     pub(crate) linear: Sampler,
-    /// For what must not be mixed.
-    pub(crate) nearest: Sampler,
 }
 
 pub(crate) fn init_placeholders(
@@ -57,20 +55,15 @@ pub(crate) fn init_placeholders(
             texture,
             default_view,
         },
-        linear: sampler(&device, FilterMode::Linear),
-        nearest: sampler(&device, FilterMode::Nearest),
+        linear: device.create_sampler(&SamplerDescriptor {
+            label: Some("fluid_sampler"),
+            address_mode_u: AddressMode::ClampToEdge,
+            address_mode_v: AddressMode::ClampToEdge,
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..default()
+        }),
     });
-}
-
-fn sampler(device: &RenderDevice, filter: FilterMode) -> Sampler {
-    device.create_sampler(&SamplerDescriptor {
-        label: Some("fluid_sampler"),
-        address_mode_u: AddressMode::ClampToEdge,
-        address_mode_v: AddressMode::ClampToEdge,
-        mag_filter: filter,
-        min_filter: filter,
-        ..default()
-    })
 }
 
 /// A texture as large as a view's target, to be drawn or copied to.

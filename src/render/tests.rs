@@ -19,7 +19,7 @@ use super::{
     plan::{MediumTerms, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
     smooth::{SmoothPipeline, SmoothSteps},
-    splat::{SplatOutput, SplatPipeline},
+    splat::{SplatKey, SplatOutput, SplatPipeline},
     thickness::ThicknessPipeline,
 };
 use crate::{
@@ -68,12 +68,18 @@ fn assert_variants<P: SpecializedRenderPipeline + Resource>(keys: Vec<P::Key>) {
 
 #[test]
 fn every_splat_output_is_made() {
-    assert_variants::<SplatPipeline>(vec![
+    let outputs = [
         SplatOutput::Layers,
         SplatOutput::Fronts,
         SplatOutput::FrontDepth,
         SplatOutput::BackDepth,
-    ]);
+        SplatOutput::Count(TextureFormat::R32Float),
+        SplatOutput::Count(TextureFormat::R16Float),
+    ];
+    let keys = outputs
+        .into_iter()
+        .flat_map(|output| [false, true].map(|cut| SplatKey { output, cut }));
+    assert_variants::<SplatPipeline>(keys.collect());
 }
 
 #[test]
@@ -245,17 +251,10 @@ fn every_thickness_is_made() {
 
 #[test]
 fn every_composite_and_debug_view_is_made() {
-    let views = [
-        None,
-        Some(FluidDebugView::BulkFront),
-        Some(FluidDebugView::BulkBack),
-        Some(FluidDebugView::SprayFront),
-        Some(FluidDebugView::SprayBack),
-        Some(FluidDebugView::Normals),
-        Some(FluidDebugView::Interfaces),
-        Some(FluidDebugView::Status),
-        Some(FluidDebugView::Classes),
-    ];
+    let views: Vec<_> = [None]
+        .into_iter()
+        .chain(FluidDebugView::ALL.map(Some))
+        .collect();
     let formats = [TextureFormat::Rgba16Float, TextureFormat::Rgba8UnormSrgb];
     let keys = pairs(&pairs(&views, &formats), &[1, 4]);
     let keys = keys
@@ -266,7 +265,16 @@ fn every_composite_and_debug_view_is_made() {
             samples,
             part: CompositePart::Whole,
             several: false,
+            accumulated: false,
         });
+    let summed_up = CompositeKey {
+        debug_view: Some(FluidDebugView::Thickness),
+        format: TextureFormat::Rgba16Float,
+        samples: 1,
+        part: CompositePart::Whole,
+        several: false,
+        accumulated: true,
+    };
     let parts = [
         CompositePart::Light,
         CompositePart::Depth,
@@ -281,6 +289,7 @@ fn every_composite_and_debug_view_is_made() {
             samples,
             part,
             several: true,
+            accumulated: false,
         });
-    assert_variants::<CompositePipeline>(keys.chain(parts).collect());
+    assert_variants::<CompositePipeline>(keys.chain(parts).chain([summed_up]).collect());
 }

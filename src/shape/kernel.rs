@@ -3,6 +3,7 @@
 use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault};
 
 use super::ShapeError;
+use crate::range::SettingRange;
 
 /// How the particles of one fluid are classified and shaped into ellipsoids.
 ///
@@ -16,6 +17,7 @@ pub struct SurfaceKernel {
     /// Unit: particle radii. Range: 1 to 10. Default: 4, which is 32 neighbours at rest.
     /// Higher: smoother shapes, at a cost that grows with the cube.
     /// Lower: every particle keeps more of its own bump; below 3 most are spray.
+    #[reflect(@SettingRange::new(1.0, 10.0).unit("radii"))]
     pub neighbor_radius: f32,
 
     /// Number of neighbours below which a particle is spray instead of bulk.
@@ -23,6 +25,7 @@ pub struct SurfaceKernel {
     /// Unit: particles. Range: any; 0 makes every particle bulk. Default: 8.
     /// Higher: thin sheets and threads come apart into droplets.
     /// Lower: droplets join the bulk and are smoothed with it.
+    #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub spray_threshold: u32,
 
     /// Whether splats are stretched and shifted to follow the surface.
@@ -36,6 +39,7 @@ pub struct SurfaceKernel {
     /// Unit: none. Range: 0 to 1. Default: 0.9.
     /// Higher: a smoother surface; it also sinks, which `surface_offset` makes up for.
     /// Lower: the particles show through as bumps.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub center_shift: f32,
 
     /// How far the splats of particles at a surface move outwards again.
@@ -44,6 +48,7 @@ pub struct SurfaceKernel {
     /// where the outermost particles' own surfaces end, so that liquid touches the walls it
     /// stands at. 0 (Yu & Turk): about that much deeper. Higher: the liquid swells, and gaps
     /// between the outermost particles become pits.
+    #[reflect(@SettingRange::new(0.0, 4.0).unit("radii"))]
     pub surface_offset: f32,
 
     /// Longest axis of an ellipsoid over its shortest (`k_r` of Yu & Turk).
@@ -51,6 +56,7 @@ pub struct SurfaceKernel {
     /// Unit: none. Range: 1 to 16. Default: 4.
     /// Higher: flatter discs, which tile a surface better and stick out more at corners.
     /// Lower: rounder splats; 1 makes spheres of all, still shifted and scaled.
+    #[reflect(@SettingRange::new(1.0, 16.0))]
     pub max_ratio: f32,
 
     /// Radius of the sphere that has the volume of a fully anisotropic splat.
@@ -59,6 +65,7 @@ pub struct SurfaceKernel {
     /// particle fills at rest.
     /// Higher: neighbours overlap more and holes close, the liquid swells.
     /// Lower: the liquid shrinks and holes open.
+    #[reflect(@SettingRange::new(0.1, 10.0).unit("radii").logarithmic())]
     pub radius_scale: f32,
 
     /// Number of neighbours up to which a splat is the unshifted sphere of radius r.
@@ -66,6 +73,7 @@ pub struct SurfaceKernel {
     /// Unit: particles. Range: any up to `full_neighbors`. Default: 8, as `spray_threshold`,
     /// so that a particle does not pop when it turns from bulk to spray.
     /// Higher: sparse regions stay spheres. Lower: they stretch.
+    #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub sphere_neighbors: u32,
 
     /// Number of neighbours from which a splat is fully anisotropic.
@@ -73,6 +81,7 @@ pub struct SurfaceKernel {
     /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (`N_ε` = 25 in the
     /// paper, for a wider R). Shape, shift and scale blend smoothly in between.
     /// Higher: a longer blend. Lower: a shorter one, and visible pops where it is short.
+    #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub full_neighbors: u32,
 
     /// Whether to tell apart the particles too deep inside to be seen.

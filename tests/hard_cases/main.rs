@@ -8,6 +8,7 @@ mod crowds;
 mod depths;
 mod eyes;
 mod liquids;
+#[path = "../common/log.rs"]
 mod log;
 mod medium;
 mod opaque;

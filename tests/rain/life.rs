@@ -1,22 +1,24 @@
 //! Rain in the life of an app: cameras, settings, sizes, and no rain at all.
 
+use bevy::diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore};
+use bevy_fluid::rain::{BAKE_PROGRESS, BAKE_TIME};
+
 use super::*;
 
 #[test]
 fn a_game_without_rain_pays_nothing() {
-    let mut plain = headless_app(VIEW.size, |app| {
+    let mut plain = new_app(VIEW.size, |app| {
         app.world_mut().spawn((VIEW.plain_camera(), UNIT_EXPOSURE));
         spawn_box(
             app.world_mut(),
             Vec3::ONE,
             Transform::from_xyz(0.0, 50.0, -4.0),
         );
-    })
-    .unwrap();
+    });
     settle(&mut plain).unwrap();
     let plain = picture(&mut plain);
 
-    let mut app = headless_app(VIEW.size, |app| {
+    let mut app = new_app(VIEW.size, |app| {
         app.add_plugins(RainPlugin {
             synchronous_bake: true,
         });
@@ -26,8 +28,7 @@ fn a_game_without_rain_pays_nothing() {
             Vec3::ONE,
             Transform::from_xyz(0.0, 50.0, -4.0),
         );
-    })
-    .unwrap();
+    });
     settle(&mut app).unwrap();
     let nothing = |app: &App| {
         assert_eq!(quads(app), None);
@@ -90,6 +91,36 @@ fn rates_beyond_all_measure_are_clamped() {
     assert!(most == of(1e6));
     assert!(most == of(f32::INFINITY));
     assert!(most != of(100.0));
+}
+
+#[test]
+fn what_makes_no_sense_is_said_once() {
+    let mut app = show_plain(white_rain(20.0, 5.0));
+    // Other tests' apps say much of entities with small numbers.
+    let other = only::<Camera3d>(&mut app);
+    let world = app.world_mut();
+    world.despawn(other);
+    let camera = (0..1000).map(|_| world.spawn_empty().id()).last().unwrap();
+    let bundle = self::camera(&VIEW, white_rain(20.0, 5.0));
+    world.entity_mut(camera).insert(bundle);
+    let said = |what: &str| log::said(&format!("camera {camera}: `Rain::{what}"));
+    assert_eq!(said(""), 0);
+    for frame in 0..3 {
+        // Set anew in every frame, as by an animation.
+        let rain = white_rain(1e6 + frame as f32, 5.0);
+        app.world_mut().entity_mut(camera).insert(rain);
+        step(&mut app, 1);
+    }
+    assert_eq!(said("rate` is 1000000; it must be from 0 to 200"), 1);
+    assert_eq!(said("rate"), 1);
+    set_rain(&mut app, white_rain(f32::NAN, 5.0));
+    assert_eq!(said("rate"), 1);
+    // Another field is another matter; and what is mended may be bad again.
+    set_rain(&mut app, white_rain(20.0, -1.0));
+    assert_eq!(said("distance"), 1);
+    set_rain(&mut app, white_rain(20.0, 5.0));
+    set_rain(&mut app, white_rain(-1.0, 5.0));
+    assert_eq!(said("rate"), 2);
 }
 
 #[test]
@@ -218,22 +249,31 @@ fn the_background_fades_beyond_the_streaks() {
 /// While textures are drawn in the background, frames go on.
 #[test]
 fn textures_come_without_being_waited_for() {
-    let mut app = headless_app(VIEW.size, |app| {
+    let mut app = new_app(VIEW.size, |app| {
         app.add_plugins(RainPlugin::default());
         app.world_mut().spawn(camera(&VIEW, Rain::HEAVY));
-    })
-    .unwrap();
+    });
     let settled = |app: &App| app.world().resource::<BakedStreaks>().is_settled();
+    let measured = |app: &App, path: &DiagnosticPath| {
+        let store = app.world().resource::<DiagnosticsStore>();
+        store.get(path).and_then(Diagnostic::value)
+    };
     step(&mut app, 1);
     assert!(!settled(&app) && quads(&app).is_none());
+    assert_eq!(measured(&app, &BAKE_TIME), None);
+    let mut progress = vec![0.0];
     for _ in 0..2000 {
+        progress.extend(measured(&app, &BAKE_PROGRESS));
         if settled(&app) {
             break;
         }
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(1));
         step(&mut app, 1);
     }
     assert!(settled(&app));
+    assert!(progress.is_sorted(), "{progress:?}");
+    assert_eq!(progress.last(), Some(&1.0));
+    assert!(measured(&app, &BAKE_TIME) > Some(0.0));
     settle(&mut app).unwrap();
     assert!(quads(&app).is_some());
 }

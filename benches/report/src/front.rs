@@ -1,6 +1,6 @@
 //! Speed against error: which methods nothing else beats in both.
 
-use crate::Table;
+use crate::{Table, methods};
 
 /// Which time stands against which error.
 #[derive(Clone, Copy)]
@@ -11,16 +11,19 @@ pub(crate) struct Trade {
     /// For axes and headings.
     pub(crate) title: &'static str,
     pub(crate) unit: &'static str,
+    /// Ways to smooth stand against each other, not whole frames that share one.
+    pub(crate) smoothing: bool,
 }
 
 /// What is plotted for each scene that has it: the smoothing alone, then the whole frame.
-pub(crate) const TRADES: [Trade; 5] = [
+pub(crate) const TRADES: [Trade; 6] = [
     Trade {
         time: "time_smooth_normals",
         error: "normal_p50",
         region: "interior",
         title: "normals, median error",
         unit: "degrees",
+        smoothing: true,
     },
     Trade {
         time: "time_smooth_normals",
@@ -28,6 +31,7 @@ pub(crate) const TRADES: [Trade; 5] = [
         region: "interior",
         title: "normals, 95th percentile",
         unit: "degrees",
+        smoothing: true,
     },
     Trade {
         time: "time_smooth_normals",
@@ -35,6 +39,7 @@ pub(crate) const TRADES: [Trade; 5] = [
         region: "interior",
         title: "roughness",
         unit: "particle radii",
+        smoothing: true,
     },
     Trade {
         time: "time_gpu",
@@ -42,6 +47,7 @@ pub(crate) const TRADES: [Trade; 5] = [
         region: "all",
         title: "picture, FLIP",
         unit: "mean FLIP",
+        smoothing: false,
     },
     Trade {
         time: "time_gpu",
@@ -49,6 +55,15 @@ pub(crate) const TRADES: [Trade; 5] = [
         region: "all",
         title: "picture, RMSE",
         unit: "RMSE of sRGB values",
+        smoothing: false,
+    },
+    Trade {
+        time: "time_gpu",
+        error: "thickness_rmse",
+        region: "all",
+        title: "thickness, RMSE",
+        unit: "particle radii",
+        smoothing: false,
     },
 ];
 
@@ -67,6 +82,7 @@ pub(crate) struct Point {
 pub(crate) fn points(table: &Table, scene: &str, trade: &Trade) -> Vec<Point> {
     let methods = table.methods(scene, trade.error).into_iter();
     let mut points: Vec<_> = methods
+        .filter(|(method, _)| !trade.smoothing || methods::smooths(method))
         .filter_map(|(method, parameters)| {
             let value =
                 |quantity, region| table.value(scene, (&method, &parameters), quantity, region);

@@ -7,6 +7,7 @@
 
 mod error;
 mod front;
+mod media;
 mod methods;
 mod options;
 mod pictures;
@@ -126,10 +127,12 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
             methods::frames(options.quick),
         ),
         Measures::Times => (Vec::new(), methods::frames(true)),
+        Measures::Windows => ([false, true].map(methods::table).concat(), Vec::new()),
+        Measures::Thickness => (Vec::new(), methods::thicknesses()),
     };
     let (smoothings, frames) = (wanted(smoothings), wanted(frames));
     let mut rig = Rig::new(scene)?;
-    if scene.measures != Measures::Times {
+    if matches!(scene.measures, Measures::Surface | Measures::All) {
         errors(
             table,
             scene,
@@ -139,15 +142,15 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
             &progress,
         )?;
     }
+    if scene.measures == Measures::Thickness {
+        media::measure_closed_form(table, scene);
+        media::measure_thickness(table, scene, &frames, &mut rig)?;
+    }
     // Of close-ups one size says enough of speed.
     if scene.measures != Measures::Surface || scene.name.ends_with("-6px") {
         progress.set_message("times");
         let turns = times::turns(&adapter_name(&rig.app), options.quick);
-        let mut timed: Vec<Method> = smoothings.into_iter().chain(frames).collect();
-        if scene.name == "wave" && !options.quick && options.method.is_empty() {
-            timed.extend([false, true].into_iter().flat_map(methods::table));
-            methods::drop_twins(&mut timed);
-        }
+        let timed: Vec<Method> = smoothings.into_iter().chain(frames).collect();
         progress.set_position(0);
         progress.set_length(timed.len() as u64 * u64::from(turns + 1));
         times::measure(table, scene, &timed, &mut rig, turns, &progress)?;

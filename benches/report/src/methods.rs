@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
+use bevy::color::Color;
 use bevy_fluid::{
-    Bilateral, CurvatureFlow, Fresnel, NarrowRange, NormalAverage, PlaneFit, PlaneFitForm,
-    Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Window,
+    Bilateral, CurvatureFlow, FluidMaterial, Fresnel, Medium, NarrowRange, NormalAverage, PlaneFit,
+    PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Thickness,
+    Window,
 };
 
 /// Settings by name.
@@ -14,6 +16,7 @@ pub(crate) struct Method {
     pub(crate) parameters: String,
     pub(crate) settings: ScreenSpaceFluid,
     pub(crate) kernel: SurfaceKernel,
+    pub(crate) material: FluidMaterial,
 }
 
 impl Method {
@@ -23,6 +26,7 @@ impl Method {
             parameters: parameters.into(),
             settings,
             kernel: SurfaceKernel::DEFAULT,
+            material: FluidMaterial::WATER,
         }
     }
 
@@ -51,6 +55,33 @@ pub(crate) const NONE: &str = "none";
 pub(crate) const DEFAULT: &str = "default";
 pub(crate) const THESIS: &str = "thesis";
 pub(crate) const EARLIER: &str = "thesis-earlier";
+pub(crate) const THICKNESS: &str = "thickness";
+
+/// Whether a method of this name is a way to smooth, and not a whole frame.
+pub(crate) fn smooths(name: &str) -> bool {
+    [
+        NONE,
+        SEPARABLE,
+        DEVICE_DEPTH,
+        TLS,
+        BILATERAL,
+        NORMAL_AVERAGE,
+        NARROW_RANGE,
+        CURVATURE_FLOW,
+    ]
+    .contains(&name)
+}
+
+/// The default's way to smooth.
+pub(crate) fn default_smoothing() -> Method {
+    let default = PlaneFit::DEFAULT;
+    fit(
+        default.form,
+        default.half_taps,
+        default.iterations,
+        default.window,
+    )
+}
 
 /// What methods are called.
 pub(crate) fn names() -> Vec<&'static str> {
@@ -59,6 +90,7 @@ pub(crate) fn names() -> Vec<&'static str> {
         .iter()
         .chain(&frames(false))
         .chain(&searches(false))
+        .chain(&thicknesses())
         .map(|method| method.name)
         .collect();
     names.retain(|name| known.insert(*name));
@@ -108,15 +140,9 @@ fn extent(window: Window) -> String {
 /// Ways to smooth, all else as in the default.
 pub(crate) fn smoothings(quick: bool) -> Vec<Method> {
     use PlaneFitForm::{DeviceDepth, Separable, TotalLeastSquares};
-    let default = PlaneFit::DEFAULT;
     let mut methods = vec![
         Method::smoothing(NONE, String::new(), Smoothing::None),
-        fit(
-            default.form,
-            default.half_taps,
-            default.iterations,
-            default.window,
-        ),
+        default_smoothing(),
         fit(TotalLeastSquares, 4, 3, Window::Pixels),
         bilateral(3, 22, Window::Pixels),
         narrow_range(3, 1.5),
@@ -132,7 +158,7 @@ pub(crate) fn smoothings(quick: bool) -> Vec<Method> {
     for (half_taps, iterations, radii) in SEPARABLE_GRID {
         methods.push(fit(Separable, half_taps, iterations, Window::Radii(radii)));
     }
-    for (half_taps, iterations, radii) in [(2, 2, 1.3), (4, 2, 0.65), (4, 3, 0.65), (4, 3, 1.0)] {
+    for (half_taps, iterations, radii) in [(4, 1, 1.7), (2, 2, 1.3), (4, 2, 0.65), (4, 3, 1.0)] {
         methods.push(fit(
             DeviceDepth,
             half_taps,
@@ -181,20 +207,19 @@ pub(crate) fn drop_twins(methods: &mut Vec<Method>) {
 }
 
 /// Half taps, iterations, half window in radii.
-const SEPARABLE_GRID: [(u32, u32, f32); 15] = [
+const SEPARABLE_GRID: [(u32, u32, f32); 14] = [
     (2, 1, 1.3),
     (3, 1, 1.3),
+    (4, 1, 1.3),
+    (4, 1, 1.7),
+    (4, 1, 2.3),
+    (6, 1, 2.0),
     (2, 2, 0.65),
     (2, 2, 1.3),
     (3, 2, 1.0),
-    (3, 3, 0.65),
-    (3, 3, 1.0),
-    (4, 1, 1.0),
-    (4, 1, 1.3),
-    (4, 1, 1.7),
     (4, 2, 0.65),
     (4, 2, 1.0),
-    (4, 2, 1.3),
+    (3, 3, 0.65),
     (4, 3, 1.0),
     (4, 4, 0.65),
 ];
@@ -269,6 +294,25 @@ pub(crate) fn searches(quick: bool) -> Vec<Method> {
         Method::new(name, parameters, settings)
     };
     ways.into_iter().map(method).collect()
+}
+
+/// Ways to find how thick an even, unbending fog is that halves light every metre.
+pub(crate) fn thicknesses() -> Vec<Method> {
+    let way = |parameters: &str, thickness| Method {
+        material: FluidMaterial {
+            refractive_index: 1.0,
+            medium: Medium::absorbing(Color::linear_rgb(0.5, 0.5, 0.5), 1.0),
+            thickness,
+            ..FluidMaterial::CLEAR_WATER
+        },
+        ..Method::new(THICKNESS, parameters, ScreenSpaceFluid::DEFAULT)
+    };
+    let mut ways = vec![way("layers", Thickness::Layers)];
+    ways.extend([0.0, 1.0, 2.0].map(|softness| {
+        let thickness = Thickness::Accumulated { softness };
+        way(&format!("summed, softness {softness}"), thickness)
+    }));
+    ways
 }
 
 /// The parameters of the thesis's tables 5.3 and 5.4: sizes by iterations.

@@ -1,7 +1,7 @@
 //! How far pictures are from the tracer's.
 
 use bevy::math::DVec3;
-use bevy_fluid::{Fresnel, Refractions, ScreenSpaceFluid};
+use bevy_fluid::{FluidMaterial, Fresnel, Refractions, ScreenSpaceFluid};
 use fluid_reference::{
     Image, Surface,
     mesh::LayerMeshes,
@@ -222,6 +222,7 @@ pub(crate) fn measure_furnace(
         };
         rig.show(&Method {
             settings,
+            material: FluidMaterial::CLEAR_WATER,
             ..default()
         })?;
         let [radiance, transmission] = rig.light()?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use image::{ImageBuffer, Rgb};
 use plotters::{
     coord::{
-        Shift,
+        CoordTranslate, Shift,
         ranged1d::{DefaultFormatting, Ranged},
     },
     prelude::*,
@@ -20,18 +20,50 @@ use crate::{
     front::{Point, TRADES, Trade, points},
 };
 
-const SIZE: (u32, u32) = (960, 640);
+const SIZE: (u32, u32) = (1120, 640);
+/// What names the methods stands beside the plot, where it covers no point.
+const LEGEND_WIDTH: u32 = 200;
 /// Colours that also differ in lightness, for print and for those who see few colours.
-const COLORS: [RGBColor; 8] = [
+const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
-    RGBColor(90, 90, 90),
-    RGBColor(0, 0, 0),
+    RGBColor(70, 70, 70),
 ];
+
+/// How the points of a method look: colours are few, so every round of them has its own shape.
+#[derive(Clone, Copy)]
+struct Marker {
+    shape: usize,
+    color: RGBColor,
+}
+
+impl Marker {
+    fn of(method: usize) -> Self {
+        Self {
+            shape: method / COLORS.len(),
+            color: COLORS[method % COLORS.len()],
+        }
+    }
+
+    fn draw<DB: DrawingBackend, CT: CoordTranslate>(
+        self,
+        area: &DrawingArea<DB, CT>,
+        at: CT::From,
+    ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>>
+    where
+        CT::From: Clone,
+    {
+        match self.shape {
+            0 => area.draw(&Circle::new(at, 5, self.color.filled())),
+            1 => area.draw(&TriangleMarker::new(at, 7, self.color.filled())),
+            _ => area.draw(&Cross::new(at, 5, self.color.stroke_width(2))),
+        }
+    }
+}
 
 /// Draws every front that the table has, as SVG and PNG.
 pub(crate) fn draw(table: &Table, folder: &Path) -> Result<(), ReportError> {
@@ -103,8 +135,9 @@ fn draw_front<DB: DrawingBackend>(
 ) -> Result<(), String> {
     let text = |error: DrawingAreaErrorKind<DB::ErrorType>| error.to_string();
     area.fill(&WHITE).map_err(text)?;
+    let (area, legend) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
     let caption = format!("{scene}: {} against time", trade.title);
-    let mut chart = ChartBuilder::on(area)
+    let mut chart = ChartBuilder::on(&area)
         .caption(caption, ("sans-serif", 24))
         .margin(16)
         .x_label_area_size(46)
@@ -133,13 +166,17 @@ fn draw_front<DB: DrawingBackend>(
     let mut methods: Vec<&str> = points.iter().map(|p| p.method.as_str()).collect();
     methods.sort_unstable();
     methods.dedup();
-    for (method, &color) in methods.iter().zip(COLORS.iter().cycle()) {
-        let own = points.iter().filter(|p| p.method == *method);
-        chart
-            .draw_series(own.map(|p| Circle::new((p.time, p.error), 5, color.filled())))
-            .map_err(text)?
-            .label(*method)
-            .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+    for (i, method) in methods.iter().enumerate() {
+        let marker = Marker::of(i);
+        for point in points.iter().filter(|p| p.method == *method) {
+            marker
+                .draw(chart.plotting_area(), (point.time, point.error))
+                .map_err(text)?;
+        }
+        let y = 70 + 22 * i as i32;
+        marker.draw(&legend, (8, y)).map_err(text)?;
+        let name = Text::new(*method, (20, y - 9), ("sans-serif", 15));
+        legend.draw(&name).map_err(text)?;
     }
     let anchor = Pos::new(HPos::Left, VPos::Bottom);
     let style = TextStyle::from(("sans-serif", 13).into_font()).pos(anchor);
@@ -154,14 +191,6 @@ fn draw_front<DB: DrawingBackend>(
             };
             EmptyElement::at((p.time, p.error)) + Text::new(label, side, style.clone())
         }))
-        .map_err(text)?;
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 15))
-        .draw()
         .map_err(text)?;
     area.present().map_err(text)
 }

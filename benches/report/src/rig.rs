@@ -88,6 +88,9 @@ impl Rig {
         if fluid.get() != Some(&method.kernel) {
             fluid.insert(method.kernel);
         }
+        if fluid.get() != Some(&method.material) {
+            fluid.insert(method.material);
+        }
     }
 
     /// Draws with a method, its pipelines compiled.
@@ -112,19 +115,15 @@ impl Rig {
         self.app.world().get(self.fluid)
     }
 
-    /// Puts the camera in a white furnace of clear liquid, or back under the sky.
+    /// Puts the camera in a white furnace, or back under the sky.
     pub(crate) fn heat(&mut self, on: bool) {
         let world = self.app.world_mut();
         if on {
-            let white = Surroundings::furnace(world);
-            world.entity_mut(self.eye).insert(white);
-            world
-                .entity_mut(self.fluid)
-                .insert(FluidMaterial::CLEAR_WATER);
+            let furnace = Surroundings::furnace(world);
+            world.entity_mut(self.eye).insert(furnace);
         } else {
             let sky = Surroundings::sky(world);
             world.entity_mut(self.eye).insert(sky);
-            world.entity_mut(self.fluid).insert(FluidMaterial::WATER);
         }
     }
 

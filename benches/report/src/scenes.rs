@@ -2,7 +2,7 @@
 
 use std::{fs, path::PathBuf};
 
-use bevy::math::{DVec3, UVec2, Vec3, dvec3, uvec2};
+use bevy::math::{DVec3, UVec2, Vec3, dvec2, dvec3, uvec2};
 use fluid_reference::{Camera, Lens, Surface, scene};
 
 use crate::{Options, ReportError, surroundings::Surroundings};
@@ -31,6 +31,10 @@ pub(crate) enum Measures {
     All,
     /// The presets' times alone.
     Times,
+    /// The times of the thesis's ways to smooth, window by window.
+    Windows,
+    /// The way through a body that does not bend light.
+    Thickness,
 }
 
 /// A scene by name, not yet made.
@@ -51,7 +55,7 @@ const fn entry(
 /// Particle radius of bodies that fill the picture, m.
 const RADIUS: f64 = 0.025;
 
-const ENTRIES: [Entry; 29] = [
+const ENTRIES: [Entry; 31] = [
     entry("slab", false, |o, n| {
         Ok(body(o, n, scene::slab(RADIUS, 30.0)))
     }),
@@ -70,6 +74,12 @@ const ENTRIES: [Entry; 29] = [
     }),
     entry("pool-and-droplets", true, |o, n| {
         Ok(body(o, n, scene::pool_and_droplets(RADIUS)))
+    }),
+    entry("two-puffs", true, |o, n| {
+        Ok(Scene {
+            measures: Measures::Thickness,
+            ..body(o, n, scene::two_spheres(RADIUS))
+        })
     }),
     entry("thin-sheet", false, |o, n| {
         Ok(body(o, n, scene::thin_sheet(RADIUS)))
@@ -106,6 +116,13 @@ const ENTRIES: [Entry; 29] = [
     }),
     entry("step", false, |o, n| {
         simulated(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))
+    }),
+    entry(WINDOWS, false, |o, n| {
+        let wave = simulated(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))?;
+        Ok(Scene {
+            measures: Measures::Windows,
+            ..wave
+        })
     }),
     entry("wave-1024x768", false, |o, n| {
         larger(o, n, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))
@@ -162,10 +179,23 @@ fn body(options: &Options, name: &'static str, of: scene::Scene) -> Scene {
     }
 }
 
-/// A plane tilted by some degrees, from afar, so many pixels for a particle's radius.
+/// A plane tilted by some degrees, from afar, so many pixels for a particle's radius. Its borders
+/// are out of view: they are no plane.
 fn plane(options: &Options, name: &'static str, degrees: f64, pixels: f64) -> Scene {
     let side = if options.quick { 128 } else { 240 };
-    close_up(name, scene::tilted_plane(RADIUS, degrees), side, pixels)
+    let seen = 0.5 * f64::from(side) * RADIUS / pixels;
+    // What is nearer to the eye than the middle needs less, what is farther more.
+    let along = seen / degrees.to_radians().cos();
+    let half = dvec2(1.0 + along / FAR, 1.0) * dvec2(seen, 1.6 * along) + 4.0 * RADIUS;
+    let plate = scene::tilted_plate(RADIUS, degrees, half);
+    Scene {
+        // Behind all of it: what opaque things hide is not drawn.
+        around: Surroundings {
+            floor: -4.0,
+            wall: -6.0 - half.y,
+        },
+        ..close_up(name, plate, side, pixels)
+    }
 }
 
 /// A ball of ten particle radii, whole.
@@ -202,9 +232,10 @@ fn close_up(name: &'static str, of: scene::Scene, side: u32, pixels: f64) -> Sce
     }
 }
 
-/// Ends the names of scenes in the thesis's second size.
-const LARGER: &str = "-1024x768";
+/// The wave again, for tables 5.3 and 5.4.
+pub(crate) const WINDOWS: &str = "wave-windows";
 
+/// A simulated scene in the thesis's second size.
 fn larger(
     options: &Options,
     name: &'static str,
@@ -217,7 +248,7 @@ fn larger(
     Ok(scene)
 }
 
-/// A frame that the example `bake` has kept.
+/// A frame that the example `bake` has kept, by the first word of the scene's name.
 fn simulated(
     options: &Options,
     name: &'static str,
@@ -225,7 +256,7 @@ fn simulated(
     target: DVec3,
 ) -> Result<Scene, ReportError> {
     let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets"))
-        .join(format!("{}.xyz", name.trim_end_matches(LARGER)));
+        .join(format!("{}.xyz", name.split('-').next().unwrap_or(name)));
     let unreadable = |reason: String| ReportError::Particles {
         path: path.clone(),
         reason,

@@ -1,6 +1,7 @@
 //! How long the passes take: all methods in turn, so that a drifting machine favours none.
 
-use bevy::diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore};
+use bevy::diagnostic::{Diagnostic, DiagnosticsStore};
+use bevy_fluid::diagnostics::gpu_time;
 use indicatif::ProgressBar;
 
 use crate::{
@@ -12,7 +13,7 @@ use crate::{
 };
 
 /// The passes by the names of their GPU spans, and what the table calls their times.
-const PASSES: [(&str, &str, &str); 6] = [
+const PASSES: [(&str, &str, &str); 7] = [
     (
         "fluid_scene_depth",
         "time_scene_depth",
@@ -21,6 +22,7 @@ const PASSES: [(&str, &str, &str); 6] = [
     ("fluid_splat", "time_splat", "time_splat_p95"),
     ("fluid_smooth", "time_smooth", "time_smooth_p95"),
     ("fluid_normals", "time_normals", "time_normals_p95"),
+    ("fluid_thickness", "time_thickness", "time_thickness_p95"),
     ("fluid_refract", "time_refract", "time_refract_p95"),
     ("fluid_composite", "time_composite", "time_composite_p95"),
 ];
@@ -103,7 +105,7 @@ pub(crate) fn measure(
                 "time_smooth_normals",
                 "time_smooth_normals_p95",
             ),
-            (&[0, 1, 2, 3, 4, 5], "time_gpu", "time_gpu_p95"),
+            (&[0, 1, 2, 3, 4, 5, 6], "time_gpu", "time_gpu_p95"),
         ] {
             if let Some([median, high]) = sum(passes) {
                 table.add(subject, quantity, "all", median, "ms");
@@ -127,8 +129,7 @@ fn frames(rig: &Rig) -> Vec<[f64; PASSES.len()]> {
         return Vec::new();
     };
     let histories = PASSES.map(|(pass, ..)| {
-        let path = DiagnosticPath::new(format!("render/{pass}/elapsed_gpu"));
-        let values = store.get(&path).map(Diagnostic::values);
+        let values = store.get(&gpu_time(pass)).map(Diagnostic::values);
         values.map_or(Vec::new(), |values| values.copied().collect::<Vec<_>>())
     });
     let count = histories.iter().map(Vec::len).max().unwrap_or(0);

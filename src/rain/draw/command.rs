@@ -23,8 +23,8 @@ use bevy::{
 };
 
 use super::{
-    prepare::RainBuffers,
-    view::{MAX_SHELLS, RainQuads},
+    prepare::{BACKDROP, DROPS, RainBuffers},
+    view::RainQuads,
 };
 
 /// The scene's depth with the liquids in it, before transparent things are drawn.
@@ -47,12 +47,12 @@ pub(crate) fn copy_scene_depth(
     span.end(ctx.command_encoder());
 }
 
-pub(crate) type DrawRain = (SetItemPipeline, DrawShell);
+pub(crate) type DrawRain = (SetItemPipeline, DrawItem);
 
-/// One shell of voxels, or the backdrop.
-pub(crate) struct DrawShell;
+/// One shell of voxels, the backdrop, or the drops near the eye.
+pub(crate) struct DrawItem;
 
-impl RenderCommand<Transparent3d> for DrawShell {
+impl RenderCommand<Transparent3d> for DrawItem {
     type Param = SRes<RainBuffers>;
     type ViewQuery = Read<RainQuads>;
     type ItemQuery = ();
@@ -64,27 +64,29 @@ impl RenderCommand<Transparent3d> for DrawShell {
         buffers: SystemParamItem<'w, '_, Self::Param>,
         pass: &mut TrackedRenderPass<'w>,
     ) -> RenderCommandResult {
-        let (PhaseItemExtraIndex::DynamicOffset(slot), Some(group)) =
+        let (PhaseItemExtraIndex::DynamicOffset(index), Some(group)) =
             (item.extra_index(), &quads.bind_group)
         else {
             return RenderCommandResult::Skip;
         };
-        pass.set_bind_group(0, group, &[quads.view_offset, quads.uniform_offset]);
-        if slot as usize == MAX_SHELLS {
+        pass.set_bind_group(0, &group.group, &[quads.view_offset, quads.uniform_offset]);
+        let index = index as usize;
+        if index == BACKDROP {
             pass.draw(0..3, 0..1);
             return RenderCommandResult::Success;
         }
-        let (Some(shell), Some(instances)) =
-            (quads.shells.get(slot as usize), quads.instances.buffer())
-        else {
+        let Some(instances) = quads.instances.buffer() else {
             return RenderCommandResult::Skip;
         };
         pass.set_vertex_buffer(0, instances.slice(..));
-        if quads.drop_indices == 0 {
-            pass.draw(0..4, shell.instances.clone());
-        } else if let Some(indices) = &buffers.into_inner().drop_indices {
+        if index == DROPS {
+            let Some(indices) = &buffers.into_inner().drop_indices else {
+                return RenderCommandResult::Skip;
+            };
             pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
-            pass.draw_indexed(0..quads.drop_indices, 0, shell.instances.clone());
+            pass.draw_indexed(0..quads.drop_indices, 0, quads.cells.clone());
+        } else if let Some(shell) = quads.shells.get(index) {
+            pass.draw(0..4, shell.instances.clone());
         }
         RenderCommandResult::Success
     }

@@ -1,4 +1,5 @@
-// Every drop by itself, as an antialiased streak: the method that billboards stand in for.
+// Every drop by itself, as an antialiased streak: near the eye, where drops are told apart, and
+// everywhere as the truth that billboards are measured against.
 
 #import bevy_fluid::rain::draw::common::{
     PI, clip_from_relative, is_sheltered, lamplight, over, pixels_per_metre, rain, ray_to,
@@ -56,15 +57,18 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let diameter = sample_diameter(uniform_of(slot));
     let falls = speed(diameter);
     let start = uniform_of(hash(slot ^ 0x68E31DA4u));
-    // A copy of the drop stands in every metre of its way; which one is in this cell by now?
-    let fallen = falls * rain.seconds;
+    // A copy of the drop stands in every cell of its way; which one is in this cell by now?
+    let row = i32(round((f32(cell.tile) + cell.fraction) / cell.size));
+    let fallen = falls * rain.seconds / cell.size;
     let left = start - fract(fallen);
     let height = fract(left);
-    let copy = hash(slot ^ hash(u32(cell.tile + i32(floor(fallen)) - i32(floor(left)))));
-    let sideways = vec2(uniform_of(copy), uniform_of(hash(copy ^ 0xB5297A4Du)));
-    var head = cell.center + vec3(sideways.x, height, sideways.y) - 0.5;
-    // Wind: sideways as it falls, about the eye's height.
-    head -= vec3(rain.wind.x, 0.0, rain.wind.y) / falls * head.y;
+    let copy = hash(slot ^ hash(u32(row + i32(floor(fallen)) - i32(floor(left)))));
+    // Columns of cells lean as drops of mean speed fall. What is faster or slower drifts through
+    // its column, in at one side as it goes out at the other.
+    let drift = rain.drift * (1.0 - falls / rain.mean_speed) / cell.size;
+    let sideways = fract(vec2(uniform_of(copy), uniform_of(hash(copy ^ 0xB5297A4Du))) + drift) - 0.5;
+    let head = cell.center + (vec3(sideways.x, 0.0, sideways.y)
+        + rain.axis / rain.axis.y * (height - 0.5)) * cell.size;
     let way = vec3(-rain.wind.x, falls, -rain.wind.y) * rain.exposure;
     let tail = head + way;
     let middle = head + 0.5 * way;
@@ -72,7 +76,13 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let a = clip_from_relative(head);
     let b = clip_from_relative(tail);
     let view_depth = dot(middle, rain.forward);
-    let is_far = select(view_depth, length(middle), rain.perspective == 1u) > rain.distance;
+    // As billboards count: across the fall, and along the ray.
+    let off = middle - dot(middle, rain.axis) * rain.axis;
+    let along_view = dot(rain.forward, rain.axis);
+    let is_perspective = rain.perspective == 1u;
+    let far = select(view_depth, length(middle), is_perspective);
+    let across = select(view_depth * sqrt(max(1.0 - along_view * along_view, 0.0)), length(off), is_perspective);
+    let is_far = far > rain.distance || across > rain.drops_end;
     // Nearer than the near plane, or behind.
     if a.z > a.w || b.z > b.w || a.w <= 0.0 || b.w <= 0.0 || is_far || is_sheltered(middle) {
         return nothing();

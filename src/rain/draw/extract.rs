@@ -9,10 +9,8 @@ use bevy::{
 use super::view::RainQuads;
 use crate::rain::{
     bake::{BakedStreaks, ReadyStreaks},
-    classes::CLASSES,
     clock::RainClock,
     settings::{Rain, RainShelter},
-    streaks::{StreakClass, StreakInput},
 };
 
 impl SyncComponent for Rain {
@@ -26,9 +24,7 @@ impl SyncComponent for Rain {
 pub struct ExtractedRain {
     pub(crate) rain: Rain,
     pub(crate) clock: RainClock,
-    pub(crate) streaks: AssetId<Image>,
-    pub(crate) input: StreakInput,
-    pub(crate) classes: [StreakClass; CLASSES],
+    pub(crate) streaks: ReadyStreaks,
     /// cd/m², from all directions.
     pub(crate) ambient: Vec3,
     pub(crate) environment: Option<EnvironmentMap>,
@@ -83,15 +79,10 @@ pub(crate) fn extract_rain(
     mut commands: Commands,
 ) {
     for (entity, rain, clock, own_ambient, light, skybox) in &cameras {
-        let (rain, _) = rain.sane();
+        let rain = rain.clamped();
         let known = extracted.get_mut(entity);
         let ready = streaks.ready().filter(|_| rain.rate > 0.0);
-        let Some(ReadyStreaks {
-            image,
-            input,
-            classes,
-        }) = ready
-        else {
+        let Some(streaks) = ready else {
             if known.is_ok() {
                 commands
                     .entity(entity)
@@ -105,9 +96,7 @@ pub(crate) fn extract_rain(
         let new = ExtractedRain {
             rain,
             clock: *clock,
-            streaks: image.id(),
-            input: *input,
-            classes: *classes,
+            streaks: streaks.clone(),
             ambient: color.to_linear().to_vec3() * brightness,
             environment: EnvironmentMap::of(light, skybox),
         };

@@ -3,10 +3,8 @@
 use bevy::{prelude::*, render::render_resource::ShaderType};
 use bytemuck::{Pod, Zeroable};
 
-use crate::rain::classes::CLASSES;
-
 /// Sizes of voxels: see [`lattice::LEVELS`](super::lattice::LEVELS).
-pub(crate) const LEVEL_COUNT: usize = 6;
+pub(crate) const LEVEL_COUNT: usize = 4;
 /// Point and spot lights that light a view's rain; of more, those that are brightest at the camera.
 pub(crate) const MAX_LIGHTS: usize = 32;
 /// Directional lights that light rain.
@@ -17,18 +15,11 @@ pub(crate) const MAX_SHELTERS: usize = 8;
 pub(crate) const SPEED_VECTORS: usize = 16;
 
 #[derive(Clone, Copy, Default, ShaderType)]
-pub(crate) struct GpuRainClass {
-    pub(crate) lean: Vec2,
-    pub(crate) fallen_tiles: i32,
-    pub(crate) fallen: f32,
-}
-
-#[derive(Clone, Copy, Default, ShaderType)]
 pub(crate) struct GpuRainLevel {
+    pub(crate) weights: Vec4,
     pub(crate) size: f32,
     pub(crate) start: f32,
     pub(crate) end: f32,
-    pub(crate) gain: f32,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, ShaderType)]
@@ -67,16 +58,18 @@ pub(crate) struct GpuRain {
     pub(crate) brightness: f32,
     pub(crate) sun_count: u32,
     pub(crate) shelter_count: u32,
-    pub(crate) drop_count: u32,
+    pub(crate) fallen_tiles: i32,
+    pub(crate) fallen: f32,
+    pub(crate) drops_end: f32,
     pub(crate) exposure: f32,
     pub(crate) seconds: f32,
     pub(crate) wind: Vec2,
+    pub(crate) drift: Vec2,
+    pub(crate) mean_speed: f32,
     pub(crate) slope: f32,
     pub(crate) smallest: f32,
     pub(crate) largest: f32,
     pub(crate) speeds: [Vec4; SPEED_VECTORS],
-    pub(crate) classes: [GpuRainClass; CLASSES],
-    pub(crate) weights: [[Vec4; CLASSES]; LEVEL_COUNT],
     pub(crate) levels: [GpuRainLevel; LEVEL_COUNT],
     pub(crate) lights: [GpuRainLight; MAX_LIGHTS],
     pub(crate) suns: [GpuRainSun; MAX_SUNS],
@@ -90,7 +83,6 @@ pub(crate) struct GpuQuad {
     pub(crate) center: Vec3,
     pub(crate) size: f32,
     pub(crate) radius: f32,
-    pub(crate) base: f32,
     pub(crate) fraction: f32,
     pub(crate) tile: i32,
     pub(crate) hash: u32,

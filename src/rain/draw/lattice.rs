@@ -7,7 +7,7 @@ use super::gpu_types::{GpuQuad, LEVEL_COUNT};
 use crate::rain::clock::RainClock;
 
 /// Voxels of one size.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Level {
     /// Side of a voxel. Unit: m.
     pub(crate) size: f32,
@@ -20,28 +20,23 @@ const fn level(size: f32, start: f32, end: f32) -> Level {
     Level { size, start, end }
 }
 
-/// Small voxels near the eye, where their lack of depth would show. From the third on, all drops
-/// fall together (`MERGED_FROM` of `types.wgsl`): their streaks are a pixel wide.
+/// Up to here, across the fall, a perspective view shows every drop by itself: there streaks are told
+/// apart, and drops of a size fall at a speed of their own. Unit: m.
+pub(crate) const NEAR: f32 = 2.0;
+
+/// Voxels of streaks, from [`NEAR`] on, or from the eye on where all rays are parallel. A voxel shows
+/// its drops as if all were at its middle.
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
-    level(0.5, 0.0, 1.0),
-    level(1.0, 1.0, 2.0),
-    level(2.0, 2.0, 6.0),
+    level(2.0, NEAR, 6.0),
     level(4.0, 6.0, 14.0),
     level(8.0, 14.0, 30.0),
     level(16.0, 30.0, 126.0),
 ];
 
-impl Level {
-    /// Billboards nearer than half their width are met only by rays near their middle: what is
-    /// lost by that around the eye, as a factor on what is left.
-    pub(crate) fn gain(&self, distance: f32) -> f32 {
-        if self.start > 0.0 {
-            return 1.0;
-        }
-        let end = self.end.min(distance);
-        end / (end - 0.25 * self.size)
-    }
-}
+/// Cells of drops one by one: small ones, for few drops are drawn beyond the view.
+pub(crate) const NEAR_CELLS: Level = level(0.5, 0.0, NEAR);
+/// The same however far away they are: larger ones, for they are many.
+pub(crate) const ALL_CELLS: Level = level(1.0, 0.0, f32::INFINITY);
 
 /// More than this are not drawn: only a very wide orthographic view asks for them.
 pub(crate) const MAX_QUADS: usize = 1 << 16;
@@ -122,17 +117,41 @@ pub(crate) fn fall_axis(lean: Vec2) -> Vec3 {
     vec3(-lean.x, 1.0, -lean.y).normalize()
 }
 
-/// Replaces `quads` by the voxels in view, far ones first. `keep` may refuse one or change it.
-/// Returns whether there were too many.
-pub(crate) fn fill(
+/// What voxels hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Content {
+    /// A billboard.
+    Streaks,
+    /// Streaks of at most this length, which may reach out of their voxel. Unit: m.
+    Drops(f32),
+}
+
+impl Content {
+    /// How far from a voxel's centre there is anything of it: the corners of a cube, stretched along
+    /// the fall, and what streaks are longer. Unit: m.
+    pub(crate) fn reach(self, size: f32, axis: Vec3) -> f32 {
+        0.87 * size / axis.y + self.longest()
+    }
+
+    fn longest(self) -> f32 {
+        match self {
+            Self::Streaks => 0.0,
+            Self::Drops(longest) => longest,
+        }
+    }
+}
+
+/// Adds the voxels in view to `quads`, level by level. `keep` may refuse one or change it. Returns
+/// whether there were too many.
+pub(crate) fn add_voxels(
     quads: &mut Vec<GpuQuad>,
     eye: &Eye,
     clock: &RainClock,
     levels: &[Level],
+    content: Content,
     distance: f32,
     mut keep: impl FnMut(&mut GpuQuad) -> bool,
 ) -> bool {
-    quads.clear();
     let axis = fall_axis(clock.lean);
     for (index, level) in levels.iter().enumerate() {
         if level.start >= distance {
@@ -142,7 +161,7 @@ pub(crate) fn fill(
         let cells =
             |low: f64, high: f64| (low / size).floor() as i64..=(high / size).floor() as i64;
         let heights = cells(
-            eye.position.y + f64::from(eye.low.y),
+            eye.position.y + f64::from(eye.low.y - content.longest()),
             eye.position.y + f64::from(eye.high.y),
         );
         let end = level.end.min(distance);
@@ -162,7 +181,7 @@ pub(crate) fn fill(
                     (low, high) = (low.max(middle - reach), high.min(middle + reach));
                 }
                 // A cell whose border is just outside may reach in.
-                let margin = 0.5 * level.size;
+                let margin = 0.5 * level.size + content.longest();
                 cells(
                     f64::from(low - margin) - shift[side],
                     f64::from(high + margin) - shift[side],
@@ -175,7 +194,8 @@ pub(crate) fn fill(
                         relative_y,
                         ((z as f64 + 0.5) * size + shift[1]) as f32,
                     );
-                    let Some(radius) = radius_in(eye, level, center, axis, distance) else {
+                    let Some(radius) = radius_in(eye, level, content, center, axis, distance)
+                    else {
                         continue;
                     };
                     let base = center_y - 0.5 * size;
@@ -183,7 +203,6 @@ pub(crate) fn fill(
                         center,
                         size: level.size,
                         radius,
-                        base: (base - clock.height) as f32,
                         fraction: (base - base.floor()) as f32,
                         tile: base.floor() as i64 as i32,
                         hash: hash([x as u32, z as u32, index as u32]),
@@ -201,30 +220,39 @@ pub(crate) fn fill(
             }
         }
     }
-    quads.sort_unstable_by(|a, b| b.radius.total_cmp(&a.radius));
     false
 }
 
 /// The distance of a voxel's centre from the eye, across the fall; `None` where it is not seen or
 /// not of this level.
-fn radius_in(eye: &Eye, level: &Level, center: Vec3, axis: Vec3, distance: f32) -> Option<f32> {
+fn radius_in(
+    eye: &Eye,
+    level: &Level,
+    content: Content,
+    center: Vec3,
+    axis: Vec3,
+    distance: f32,
+) -> Option<f32> {
     let half = 0.5 * level.size;
     let across = |way: Vec3| way - way.dot(axis) * axis;
-    let (radius, farthest) = if eye.perspective {
-        let radius = across(center).length();
-        // The billboard turns with the direction to its centre: at the centre it has none.
-        if radius < 0.1 * level.size || center.length() > distance + level.size {
-            return None;
-        }
-        (radius, radius.hypot(half))
-    } else {
+    let (radius, nearest, farthest) = if !eye.perspective {
         let radius = center.dot(across(eye.forward).try_normalize()?);
-        (radius, radius)
+        (radius, radius - half, radius + half)
+    } else if center.length() > distance + level.size {
+        return None;
+    } else {
+        let radius = across(center).length();
+        match content {
+            // The billboard turns with the direction to its centre: at the centre it has none.
+            Content::Streaks if radius < 0.1 * level.size => return None,
+            // The billboard's ends are farther away, and it stands for what is behind it, too.
+            Content::Streaks => (radius, radius - half, radius.hypot(half) + half),
+            // Corners of a square.
+            Content::Drops(_) => (radius, radius - 1.42 * half, radius + 1.42 * half),
+        }
     };
-    // Corners of a cube, stretched along the fall.
-    let reach = 0.87 * level.size / axis.y;
-    let within = radius - half < level.end.min(distance) && farthest + half > level.start;
-    (within && eye.sees(center, reach)).then_some(radius)
+    let within = nearest < level.end.min(distance) && farthest > level.start;
+    (within && eye.sees(center, content.reach(level.size, axis))).then_some(radius)
 }
 
 fn hash(words: [u32; 3]) -> u32 {

@@ -171,7 +171,6 @@ fn quad_layout() -> VertexBufferLayout {
             VertexFormat::Float32,
             VertexFormat::Float32,
             VertexFormat::Float32,
-            VertexFormat::Float32,
             VertexFormat::Sint32,
             VertexFormat::Uint32,
             VertexFormat::Uint32,

@@ -22,13 +22,13 @@ use bevy::{
 use super::{
     command::DrawRain,
     extract::{EnvironmentMap, ExtractedRain, Shelters},
-    gpu_types::GpuRain,
-    lattice::{Eye, LEVELS, Level, fill},
+    gpu_types::{GpuQuad, GpuRain},
+    lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels},
     lights::{NearLights, suns},
     pipeline::{RainKey, RainPart, RainPipeline},
-    view::{MAX_SHELLS, RainQuads},
+    view::{MAX_SHELLS, RainBindGroup, RainQuads, levels},
 };
-use crate::rain::{clock::RainClock, settings::RainMethod};
+use crate::rain::drops::{LARGEST, SMALLEST, count};
 
 /// What all views share.
 #[derive(Resource)]
@@ -36,27 +36,25 @@ pub(crate) struct RainBuffers {
     pub(crate) uniforms: DynamicUniformBuffer<GpuRain>,
     /// Two triangles for every four vertices.
     pub(crate) drop_indices: Option<Buffer>,
-    /// Phases tell their items apart by entity; these stand for a view's shells and its backdrop.
-    pub(crate) shells: [Entity; MAX_SHELLS + 1],
+    /// Phases tell their items apart by entity; these stand for a view's shells, its backdrop and its
+    /// drops.
+    pub(crate) items: [Entity; MAX_SHELLS + 2],
     near: NearLights,
 }
 
 pub(crate) fn init_rain_buffers(mut commands: Commands) {
-    let shells = core::array::from_fn(|_| commands.spawn_empty().id());
+    let items = core::array::from_fn(|_| commands.spawn_empty().id());
     commands.insert_resource(RainBuffers {
         uniforms: DynamicUniformBuffer::default(),
         drop_indices: None,
-        shells,
+        items,
         near: NearLights::default(),
     });
 }
 
-/// Drops are drawn in cubes of one metre, however far away.
-const CELLS: [Level; 1] = [Level {
-    size: 1.0,
-    start: 0.0,
-    end: f32::INFINITY,
-}];
+/// Items of a view after its shells.
+pub(crate) const BACKDROP: usize = MAX_SHELLS;
+pub(crate) const DROPS: usize = MAX_SHELLS + 1;
 /// Denser rain than 200 mm/h is not asked for.
 const MAX_DROPS: u32 = 6000;
 
@@ -81,6 +79,7 @@ pub(crate) fn queue_rain(
         let quads = &mut *quads;
         quads.instances.clear();
         quads.shells.clear();
+        quads.cells = 0..0;
         let rain = &extracted.rain;
         let eye = Eye::new(&view.world_from_view, &view.clip_from_view, rain.distance);
         let (Some(eye), Some(phase)) = (eye, phases.get_mut(&view.retained_view_entity)) else {
@@ -106,42 +105,72 @@ pub(crate) fn queue_rain(
             || gpu.sun_count > 0
             || rain.brightness <= 0.0;
         let near = &buffers.near;
-        let reach = 0.87 / gpu.axis.y;
-        let keep = |quad: &mut super::gpu_types::GpuQuad| {
-            if !near.is_empty() {
-                quad.lamps = near.reaching(quad.center, reach * quad.size);
+        let axis = gpu.axis;
+        let keep = |content: Content| {
+            move |quad: &mut GpuQuad| {
+                if !near.is_empty() {
+                    quad.lamps = near.reaching(quad.center, content.reach(quad.size, axis));
+                }
+                always || quad.lamps != 0
             }
-            always || quad.lamps != 0
         };
-        let (part, levels, clock) = match rain.method {
-            RainMethod::Streaks => (RainPart::Billboards, &LEVELS[..], extracted.clock),
-            // Each drop leans by itself.
-            RainMethod::PerDrop => (RainPart::Drops, &CELLS[..], RainClock::default()),
-        };
+        let (levels, drops_end) = levels(rain.method, &eye);
         let instances = quads.instances.values_mut();
-        if fill(instances, &eye, &clock, levels, rain.distance, keep) {
+        let clock = &extracted.clock;
+        let mut too_many = levels.is_some_and(|levels| {
+            let content = Content::Streaks;
+            let keep = keep(content);
+            add_voxels(
+                instances,
+                &eye,
+                clock,
+                &levels,
+                content,
+                rain.distance,
+                keep,
+            )
+        });
+        let voxels = quads.instances.len();
+        quads.cut_shells(rain.distance, phase.items.is_empty());
+        if drops_end > 0.0 {
+            let cells = if levels.is_some() {
+                NEAR_CELLS
+            } else {
+                ALL_CELLS
+            };
+            let (instances, content) =
+                (quads.instances.values_mut(), Content::Drops(gpu.longest()));
+            let keep = keep(content);
+            too_many |= add_voxels(
+                instances,
+                &eye,
+                clock,
+                &[cells],
+                content,
+                rain.distance,
+                keep,
+            );
+            let drops = count(f64::from(rain.rate), SMALLEST, LARGEST) as f32 * cells.size.powi(3);
+            quads.drop_indices = 6 * (drops.round() as u32).min(MAX_DROPS);
+            quads.cells = voxels as u32..quads.instances.len() as u32;
+        }
+        if too_many {
             bevy::utils::once!(warn!(
                 "a view is too wide for its rain: not all of it is drawn"
             ));
         }
-        quads.drop_indices = match rain.method {
-            RainMethod::Streaks => 0,
-            RainMethod::PerDrop => 6 * gpu.drop_count.min(MAX_DROPS),
-        };
         quads.uniform_offset = buffers.uniforms.push(&gpu);
-        let samples = msaa.samples();
-        let ids = [RainPart::Backdrop, part].map(|part| {
-            let key = RainKey {
-                part,
-                format: view.target_format,
-                samples,
-            };
-            pipelines.specialize(&cache, &pipeline, key)
-        });
-        quads.pipelines = Some(ids);
+        let [backdrop, billboards, drops] =
+            [RainPart::Backdrop, RainPart::Billboards, RainPart::Drops].map(|part| {
+                let key = RainKey {
+                    part,
+                    format: view.target_format,
+                    samples: msaa.samples(),
+                };
+                pipelines.specialize(&cache, &pipeline, key)
+            });
 
-        quads.cut_shells(rain.distance, phase.items.is_empty());
-        let mut add = |slot: usize, distance: f32, pipeline| {
+        let mut add = |item: usize, distance: f32, pipeline| {
             phase.add_transient(Transparent3d {
                 sorting_info: TransparentSortingInfo3d::Sorted {
                     mesh_center: place + eye.forward * distance,
@@ -149,19 +178,23 @@ pub(crate) fn queue_rain(
                 },
                 distance: 0.0,
                 pipeline,
-                entity: (buffers.shells[slot], view.retained_view_entity.main_entity),
+                entity: (buffers.items[item], view.retained_view_entity.main_entity),
                 draw_function: draw,
                 batch_range: 0..1,
-                // Which shell; the last is the backdrop.
-                extra_index: PhaseItemExtraIndex::DynamicOffset(slot as u32),
+                // Which item it is.
+                extra_index: PhaseItemExtraIndex::DynamicOffset(item as u32),
                 indexed: false,
             });
         };
         if rain.extent > rain.distance {
-            add(MAX_SHELLS, rain.distance + 1.0, ids[0]);
+            add(BACKDROP, rain.distance + 1.0, backdrop);
         }
-        for (slot, shell) in quads.shells.iter().enumerate() {
-            add(slot, shell.distance, ids[1]);
+        for (shell_index, shell) in quads.shells.iter().enumerate() {
+            add(shell_index, shell.distance, billboards);
+        }
+        if !quads.cells.is_empty() && quads.drop_indices > 0 {
+            // At the middle of the air that they fill.
+            add(DROPS, 0.75 * drops_end.min(rain.distance), drops);
         }
     }
 }
@@ -196,7 +229,7 @@ pub(crate) fn prepare_rain(
         let Some(size) = camera.physical_target_size else {
             continue;
         };
-        if quads.drop_indices > 0 && buffers.drop_indices.is_none() {
+        if !quads.cells.is_empty() && buffers.drop_indices.is_none() {
             buffers.drop_indices = Some(drop_indices(&device));
         }
         let capacity = quads.instances.len().next_power_of_two();
@@ -251,24 +284,52 @@ pub(crate) fn prepare_rain_bind_groups(
         let environment = environment_of(extracted, &images)
             .and_then(|map| images.get(map.image))
             .unwrap_or(&fallback.cube);
-        let group = (|| {
-            let streaks = images.get(extracted.streaks)?;
-            let depth = quads.depth.as_ref()?;
-            let multisampled = usize::from(msaa.samples() > 1);
-            Some(device.create_bind_group(
-                "rain",
-                &cache.get_bind_group_layout(&pipeline.layouts[multisampled]),
-                &BindGroupEntries::sequential((
-                    view_uniforms.uniforms.binding()?,
-                    buffers.uniforms.binding()?,
-                    &depth.default_view,
-                    &environment.texture_view,
-                    &environment.sampler,
-                    &streaks.texture_view,
-                    &streaks.sampler,
-                )),
+        let sources = (|| {
+            Some((
+                view_uniforms.uniforms.buffer()?.id(),
+                buffers.uniforms.buffer()?.id(),
+                view_uniforms.uniforms.binding()?,
+                buffers.uniforms.binding()?,
+                &quads.depth.as_ref()?.default_view,
+                images.get(&extracted.streaks.image)?,
             ))
         })();
-        quads.bind_group = group;
+        let Some((views_id, rain_id, views, rain, depth, streaks)) = sources else {
+            quads.bind_group = None;
+            continue;
+        };
+        let ids = (
+            [views_id, rain_id],
+            [
+                depth.id(),
+                environment.texture_view.id(),
+                streaks.texture_view.id(),
+            ],
+        );
+        if let Some(known) = &quads.bind_group
+            && (known.buffers, known.textures) == ids
+        {
+            continue;
+        }
+        let multisampled = usize::from(msaa.samples() > 1);
+        let group = device.create_bind_group(
+            "rain",
+            &cache.get_bind_group_layout(&pipeline.layouts[multisampled]),
+            &BindGroupEntries::sequential((
+                views,
+                rain,
+                depth,
+                &environment.texture_view,
+                &environment.sampler,
+                &streaks.texture_view,
+                &streaks.sampler,
+            )),
+        );
+        let (buffers, textures) = ids;
+        quads.bind_group = Some(RainBindGroup {
+            group,
+            buffers,
+            textures,
+        });
     }
 }

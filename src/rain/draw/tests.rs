@@ -1,23 +1,28 @@
-//! Every shader variant composes, validates and makes a pipeline; GPU twins are as large as they say.
+//! Every shader variant composes, validates and makes a pipeline; GPU twins are as large as they say;
+//! a steady frame allocates nothing.
 
 use bevy::{
+    core_pipeline::core_3d::Transparent3d,
+    ecs::system::IntoSystem,
     prelude::*,
     render::{
         RenderApp,
+        render_phase::ViewSortedRenderPhases,
         render_resource::{
             CachedPipelineState, PipelineCache, SpecializedRenderPipeline, TextureFormat,
         },
     },
 };
-use fluid_stage::{headless_app, settle};
+use fluid_stage::{headless_app, settle, step};
 
 use super::{
+    RainQuads,
     gpu_types::GpuQuad,
     pipeline::{RainKey, RainPart, RainPipeline},
+    prepare::{prepare_rain_bind_groups, queue_rain},
 };
 use crate::rain::{
-    RainPlugin,
-    classes::CLASSES,
+    Rain, RainPlugin, RainShelter,
     streaks::{HEIGHT, VARIANTS, WIDTH},
 };
 
@@ -60,11 +65,55 @@ fn every_part_of_rain_is_made() {
 fn shaders_know_the_same_numbers() {
     let types = include_str!("types.wgsl");
     for line in [
-        format!("const CLASSES: u32 = {CLASSES}u;"),
         format!("const VARIANTS: u32 = {VARIANTS}u;"),
         format!("vec2({WIDTH}.0, {HEIGHT}.0)"),
     ] {
         assert!(types.contains(&line), "{line}");
     }
-    assert_eq!(size_of::<GpuQuad>(), 44);
+    assert_eq!(size_of::<GpuQuad>(), 40);
+}
+
+/// With all that a frame may have: lamps, suns, shelters, a moving camera.
+#[test]
+fn a_steady_frame_allocates_nothing() {
+    let mut app = headless_app(uvec2(64, 48), |app| {
+        app.add_plugins(RainPlugin {
+            synchronous_bake: true,
+        });
+        let world = app.world_mut();
+        world.spawn((Camera3d::default(), Rain::HEAVY));
+        world.spawn((PointLight::default(), Transform::from_xyz(0.0, 1.0, -3.0)));
+        world.spawn((SpotLight::default(), Transform::from_xyz(1.0, 1.0, -2.0)));
+        world.spawn(DirectionalLight::default());
+        world.spawn((RainShelter::default(), Transform::from_xyz(2.0, 1.0, -3.0)));
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    step(&mut app, 2);
+    let world = app.sub_app_mut(RenderApp).world_mut();
+    let mut queue = IntoSystem::into_system(queue_rain);
+    let mut bind = IntoSystem::into_system(prepare_rain_bind_groups);
+    queue.initialize(world);
+    bind.initialize(world);
+    let mut frame = |world: &mut World| {
+        for phase in world
+            .resource_mut::<ViewSortedRenderPhases<Transparent3d>>()
+            .values_mut()
+        {
+            // As Bevy does between frames.
+            phase.clear();
+            phase.transient_items.clear();
+        }
+        queue.run((), world).unwrap();
+        bind.run((), world).unwrap();
+    };
+    frame(world);
+    let spent = allocation_counter::measure(|| frame(world));
+    let quads: Vec<_> = world.query::<&RainQuads>().iter(world).collect();
+    assert!(
+        quads
+            .iter()
+            .all(|quads| quads.len() > 10 && quads.bind_group.is_some())
+    );
+    assert_eq!(spent.count_total, 0, "{spent:?}");
 }

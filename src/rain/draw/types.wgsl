@@ -2,22 +2,14 @@
 
 // Positions are relative to the eye, in metres along the world's axes.
 
-struct GpuRainClass {
-    // How far its drops go sideways (x, z) while they fall a metre, beyond what the axis leans.
-    lean: vec2<f32>,
-    // How far they have fallen: whole metres, and the rest.
-    fallen_tiles: i32,
-    fallen: f32,
-}
-
 struct GpuRainLevel {
+    // What of the four densities makes up a voxel.
+    weights: vec4<f32>,
     // Side of its voxels.
     size: f32,
     // Distances from the eye, across the fall, that its voxels stand for.
     start: f32,
     end: f32,
-    // Makes good for what billboards cannot cover around the eye.
-    gain: f32,
 }
 
 struct GpuRainLight {
@@ -62,32 +54,33 @@ struct GpuRain {
     brightness: f32,
     sun_count: u32,
     shelter_count: u32,
-    // For drops one by one: how many in a cubic metre, for how long, and how they are distributed.
-    drop_count: u32,
+    // How far the drops of the textures have fallen: whole metres, and the rest.
+    fallen_tiles: i32,
+    fallen: f32,
+    // Drops one by one: up to which distance across the fall there are any.
+    drops_end: f32,
     exposure: f32,
+    // For how long they have fallen, and how far the air has gone meanwhile.
     seconds: f32,
     wind: vec2<f32>,
+    drift: vec2<f32>,
+    // At which columns of drops lean.
+    mean_speed: f32,
     // 1/mm.
     slope: f32,
     smallest: f32,
     largest: f32,
     // Terminal speeds by diameter, in steps of SPEED_STEP.
     speeds: array<vec4<f32>, 16>,
-    classes: array<GpuRainClass, 5>,
-    // Of each level's classes: what of the four densities makes up a voxel.
-    weights: array<array<vec4<f32>, 5>, 6>,
-    levels: array<GpuRainLevel, 6>,
+    levels: array<GpuRainLevel, 4>,
     lights: array<GpuRainLight, 32>,
     suns: array<GpuRainSun, 4>,
     shelters: array<GpuShelter, 8>,
 }
 
-// Classes of diameters, the last with all drops: that is what levels from a certain one on show.
-const CLASSES: u32 = 5u;
-const MERGED_FROM: u32 = 2u;
-const VARIANTS: u32 = 4u;
+const VARIANTS: u32 = 8u;
 // Texels along a metre, across the fall and along it.
-const STREAK_TEXELS: vec2<f32> = vec2(512.0, 256.0);
+const STREAK_TEXELS: vec2<f32> = vec2(512.0, 512.0);
 // mm.
 const SPEED_STEP: f32 = 0.1;
 
@@ -97,12 +90,11 @@ struct Voxel {
     @location(1) size: f32,
     // Distance of the centre from the eye, across the fall.
     @location(2) radius: f32,
-    // Height of the lower edge: above the height about which wind shears, and in textures.
-    @location(3) base: f32,
-    @location(4) fraction: f32,
-    @location(5) tile: i32,
-    @location(6) hash: u32,
+    // Height of the lower edge: whole metres, and the rest.
+    @location(3) fraction: f32,
+    @location(4) tile: i32,
+    @location(5) hash: u32,
     // A bit for each light that reaches it.
-    @location(7) lamps: u32,
-    @location(8) level: u32,
+    @location(6) lamps: u32,
+    @location(7) level: u32,
 }

@@ -5,7 +5,7 @@ use core::ops::Range;
 use bevy::{
     prelude::*,
     render::{
-        render_resource::{BindGroup, BufferUsages, CachedRenderPipelineId, RawBufferVec},
+        render_resource::{BindGroup, BufferId, BufferUsages, RawBufferVec, TextureViewId},
         texture::CachedTexture,
     },
 };
@@ -13,14 +13,14 @@ use bevy::{
 use super::{
     extract::{ExtractedRain, Shelters},
     gpu_types::{
-        GpuQuad, GpuRain, GpuRainClass, GpuRainLevel, GpuShelter, LEVEL_COUNT, MAX_SHELTERS,
-        SPEED_VECTORS,
+        GpuQuad, GpuRain, GpuRainLevel, GpuShelter, LEVEL_COUNT, MAX_SHELTERS, SPEED_VECTORS,
     },
-    lattice::{Eye, LEVELS, fall_axis},
+    lattice::{Eye, LEVELS, Level, NEAR, fall_axis},
 };
 use crate::rain::{
-    classes::{Class, density_weights},
-    drops::{LARGEST, SMALLEST, count, extinction, slope},
+    densities::density_weights,
+    drops::{LARGEST, SMALLEST, extinction, slope},
+    settings::RainMethod,
 };
 
 /// The most stretches of distance that transparent things sort between.
@@ -29,15 +29,23 @@ pub(crate) const MAX_SHELLS: usize = 16;
 /// What a view draws of rain, in the render world.
 #[derive(Component)]
 pub struct RainQuads {
+    /// Voxels of streaks, far ones first, and then cells of drops one by one.
     pub(crate) instances: RawBufferVec<GpuQuad>,
     pub(crate) shells: Vec<Shell>,
-    /// Indices to draw for every voxel of drops one by one; 0 for billboards.
+    pub(crate) cells: Range<u32>,
+    /// Indices to draw for every cell of drops.
     pub(crate) drop_indices: u32,
     pub(crate) depth: Option<CachedTexture>,
-    pub(crate) bind_group: Option<BindGroup>,
+    pub(crate) bind_group: Option<RainBindGroup>,
     pub(crate) uniform_offset: u32,
     pub(crate) view_offset: u32,
-    pub(crate) pipelines: Option<[CachedRenderPipelineId; 2]>,
+}
+
+/// What the shaders read, and what it was made of: it holds until that is another.
+pub(crate) struct RainBindGroup {
+    pub(crate) group: BindGroup,
+    pub(crate) buffers: [BufferId; 2],
+    pub(crate) textures: [TextureViewId; 3],
 }
 
 /// Voxels at about the same distance from the eye.
@@ -49,7 +57,7 @@ pub(crate) struct Shell {
 }
 
 impl RainQuads {
-    /// How many voxels the view draws.
+    /// How many voxels of streaks and cells of drops the view draws.
     pub fn len(&self) -> usize {
         self.instances.len()
     }
@@ -59,10 +67,12 @@ impl RainQuads {
         self.instances.is_empty()
     }
 
-    /// Cuts the sorted voxels into shells: one for all where nothing needs to sort between them.
+    /// Sorts the voxels of streaks, which are all that there are so far, far ones first, and cuts them
+    /// into shells: one for all where nothing needs to sort between them.
     pub(crate) fn cut_shells(&mut self, distance: f32, alone: bool) {
         self.shells.clear();
-        let quads = self.instances.values();
+        let quads = self.instances.values_mut();
+        quads.sort_unstable_by(|a, b| b.radius.total_cmp(&a.radius));
         let width = (distance / (MAX_SHELLS - 1) as f32).max(0.5);
         let index = |quad: &GpuQuad| {
             if alone {
@@ -97,18 +107,28 @@ impl Default for RainQuads {
         Self {
             instances,
             shells: Vec::new(),
+            cells: 0..0,
             drop_indices: 0,
             depth: None,
             bind_group: None,
             uniform_offset: 0,
             view_offset: 0,
-            pipelines: None,
         }
     }
 }
 
-/// Wraps what grows for ever, so that 32-bit floats can follow it. Unit: s.
-const DROP_PERIOD: f64 = 256.0;
+/// The levels of voxels of streaks, and up to which distance drops are drawn one by one instead.
+pub(crate) fn levels(method: RainMethod, eye: &Eye) -> (Option<[Level; LEVEL_COUNT]>, f32) {
+    match method {
+        RainMethod::PerDrop => (None, f32::INFINITY),
+        RainMethod::Streaks if eye.perspective => (Some(LEVELS), NEAR),
+        RainMethod::Streaks => {
+            let mut levels = LEVELS;
+            levels[0].start = 0.0;
+            (Some(levels), 0.0)
+        }
+    }
+}
 
 impl GpuRain {
     /// Without lights and shelters.
@@ -116,10 +136,10 @@ impl GpuRain {
         let ExtractedRain {
             rain,
             clock,
-            input,
-            classes,
+            streaks,
             ..
         } = extracted;
+        let (levels, drops_end) = levels(rain.method, eye);
         let rate = f64::from(rain.rate);
         let axis = fall_axis(clock.lean);
         let mut gpu = Self {
@@ -131,42 +151,43 @@ impl GpuRain {
             extinction: extinction(rate) as f32,
             extent: rain.extent,
             brightness: rain.brightness,
-            drop_count: count(rate, SMALLEST, LARGEST).round() as u32,
-            exposure: input.exposure,
-            seconds: (clock.seconds % DROP_PERIOD) as f32,
+            fallen_tiles: clock.fallen.floor() as i64 as i32,
+            fallen: (clock.fallen - clock.fallen.floor()) as f32,
+            drops_end: drops_end.min(1e9),
+            exposure: streaks.input.exposure,
+            seconds: clock.seconds as f32,
             wind: rain.wind,
+            drift: clock.drift.as_vec2(),
+            mean_speed: streaks.speed as f32,
             slope: slope(rate) as f32,
             smallest: SMALLEST as f32,
             largest: LARGEST as f32,
             speeds: core::array::from_fn(|i| {
                 Vec4::from_array(core::array::from_fn(|k| {
-                    input.law.speed(0.1 * (4 * i + k) as f64) as f32
+                    streaks.input.law.speed(0.1 * (4 * i + k) as f64) as f32
                 }))
             }),
             ..default()
         };
-        let bounds = Class::all();
-        for (index, class) in classes.iter().enumerate() {
-            let fallen = clock.fallen[index];
-            gpu.classes[index] = GpuRainClass {
-                lean: rain.wind / class.speed as f32 - clock.lean,
-                fallen_tiles: fallen.floor() as i64 as i32,
-                fallen: (fallen - fallen.floor()) as f32,
-            };
-            for (level, voxel) in LEVELS.iter().enumerate() {
-                let wanted = bounds[index].extinction(rate) * f64::from(voxel.size);
-                gpu.weights[level][index] = density_weights(wanted, class.extinction) * class.scale;
-            }
-        }
-        for (gpu, level) in gpu.levels.iter_mut().zip(LEVELS) {
+        for (gpu, level) in gpu.levels.iter_mut().zip(levels.unwrap_or_default()) {
+            let wanted = extinction(rate) * f64::from(level.size);
             *gpu = GpuRainLevel {
+                weights: density_weights(wanted, streaks.extinction) * streaks.scale,
                 size: level.size,
                 start: level.start,
                 end: level.end,
-                gain: level.gain(rain.distance),
             };
         }
         gpu
+    }
+
+    /// The longest streak. Unit: m.
+    pub(crate) fn longest(&self) -> f32 {
+        let fastest = self
+            .speeds
+            .iter()
+            .fold(0.0, |most: f32, v| most.max(v.max_element()));
+        self.wind.length().hypot(fastest) * self.exposure
     }
 
     /// The nearest shelters.

@@ -32,7 +32,7 @@ const DIRECT: u32 = 0x80000u;
 // A step is some pixels long: short tracks take few.
 const STEP_PIXELS: f32 = 6.0;
 const MAX_STEPS: f32 = 32.0;
-const REFINEMENTS: i32 = 5;
+const HALVINGS: i32 = 4;
 
 fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec3<f32> {
     // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
@@ -53,7 +53,8 @@ fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
 #ifdef SEVERAL
     let t = dot(body.behind.xyz - position, direction);
     let device = device_from_view(position + t * direction);
-    if body.behind.w > 0.0 && t > 0.0 && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
+    let is_there = (body.behind.w > 0.0) & (t > 0.0);
+    if is_there && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
         let pixel = pixel_from_ndc(device.xy);
         let painted = color_at(pixel);
         if nearest_scene_depth(vec2<i32>(pixel)) <= 0.0
@@ -113,35 +114,50 @@ fn scene_depth_on(way: Way, s: f32) -> f32 {
     return nearest_scene_depth(clamp(vec2<i32>(way.start.xy + s * way.step.xy), low, high));
 }
 
+// How far behind the scene the ray is at `s`, in device depth (reverse z).
+fn gap_on(way: Way, s: f32) -> f32 {
+    return scene_depth_on(way, s) - (way.start.z + s * way.step.z);
+}
+
+// Where between `low`, before the scene, and `high`, behind it, the ray meets it. Over a plane the
+// gap is linear and one look along the line is enough; at a step in depth the way is halved.
+fn meeting_on(way: Way, low: vec2<f32>, high: vec2<f32>) -> f32 {
+    let slope = (high.y - low.y) / (high.x - low.x);
+    let zero = low.x - low.y / slope;
+    let gap = gap_on(way, zero);
+    if abs(gap) <= 0.1 * (high.y - low.y) {
+        return zero - gap / slope;
+    }
+    var ends = select(vec2(zero, high.x), vec2(low.x, zero), gap > 0.0);
+    for (var k = 0; k < HALVINGS; k += 1) {
+        let middle = 0.5 * (ends.x + ends.y);
+        ends = select(vec2(middle, ends.y), vec2(ends.x, middle), gap_on(way, middle) > 0.0);
+    }
+    return ends.y;
+}
+
 // The scene's colour where the ray meets its depth, else the environment.
 fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
     let track = track(position, direction);
     let way = way_of(track);
     let steps = clamp(ceil(length(way.step.xy) / STEP_PIXELS), 4.0, MAX_STEPS);
-    var before = 0.0;
+    // (s, gap)
+    var before = vec2(0.0, gap_on(way, 0.0));
     for (var i = 1.0; i <= steps; i += 1.0) {
-        var s = i / steps;
-        let scene_depth = scene_depth_on(way, s);
-        // Reverse z: behind something.
-        if scene_depth > way.start.z + s * way.step.z {
+        let at = vec2(i / steps, gap_on(way, i / steps));
+        if at.y > 0.0 {
             let map = depth_map(track.start.xy);
-            let entry = view_depth(map, way.start.z + before * way.step.z);
+            let entry = view_depth(map, way.start.z + before.x * way.step.z);
             let slack = 4.0 * body.radius + 0.05 * entry;
             // It is met if it lies within the step, not if it covers the ray from nearer the eye.
+            let scene_depth = at.y + way.start.z + at.x * way.step.z;
             if view_depth(map, scene_depth) >= entry - slack {
-                var low = before;
-                for (var k = 0; k < REFINEMENTS; k += 1) {
-                    let middle = 0.5 * (low + s);
-                    if scene_depth_on(way, middle) > way.start.z + middle * way.step.z {
-                        s = middle;
-                    } else {
-                        low = middle;
-                    }
-                }
-                return color_at(way.start.xy + s * way.step.xy);
+                // At the start it may be behind already.
+                let low = vec2(before.x, min(before.y, -1e-9));
+                return color_at(way.start.xy + meeting_on(way, low, at) * way.step.xy);
             }
         }
-        before = s;
+        before = at;
     }
     return far_away(position, direction);
 }

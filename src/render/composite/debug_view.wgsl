@@ -4,6 +4,7 @@
 #import bevy_fluid::render::functions::{
     decode_normal, depth_map, has_back, has_front, ndc_from_pixel, view_depth,
 }
+#import bevy_fluid::render::straight::layered_length
 
 @group(1) @binding(0) var bulk_layers: texture_2d<f32>;
 @group(1) @binding(1) var bulk_normals: texture_2d<f32>;
@@ -12,6 +13,10 @@
 @group(1) @binding(4) var exits: texture_2d<u32>;
 // Nearest and farthest view depth of the body.
 @group(1) @binding(5) var<uniform> depth_range: vec4<f32>;
+// The number of splats, or the way through them where it was summed up.
+@group(1) @binding(6) var amounts: texture_2d<f32>;
+
+const DIRECT: u32 = 0x80000u;
 
 fn shade(there: bool, d: f32, position: vec2<f32>) -> vec3<f32> {
     if !there {
@@ -33,6 +38,30 @@ fn palette(i: u32) -> vec3<f32> {
         case 7u: { return vec3(0.3, 0.3, 0.3); }
         default: { return vec3(0.0); }
     }
+}
+
+// From nothing to all: black, violet, red, orange, white.
+fn heat(amount: f32) -> vec3<f32> {
+    let t = 4.0 * clamp(amount, 0.0, 1.0);
+    var color = mix(vec3(0.0), vec3(0.18, 0.02, 0.35), min(t, 1.0));
+    color = mix(color, vec3(0.7, 0.03, 0.12), clamp(t - 1.0, 0.0, 1.0));
+    color = mix(color, vec3(0.95, 0.45, 0.02), clamp(t - 2.0, 0.0, 1.0));
+    return mix(color, vec3(1.0), clamp(t - 3.0, 0.0, 1.0));
+}
+
+// The straight way through the liquid, as a part of the body's depth.
+fn relative_thickness(bulk: vec2<f32>, spray: vec2<f32>, position: vec2<f32>) -> f32 {
+    let pixel = vec2<i32>(position);
+#ifdef ACCUMULATED
+    let length = textureLoad(amounts, pixel, 0).x;
+#else
+    // A front without a back: nothing is seen through it.
+    if (has_front(bulk) && !has_back(bulk)) || (has_front(spray) && !has_back(spray)) {
+        return 1.0;
+    }
+    let length = layered_length(bulk, spray, pixel, ndc_from_pixel(position));
+#endif
+    return length / (depth_range.y - depth_range.x);
 }
 
 // The least fortunate of a ray's searches.
@@ -93,6 +122,21 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef CLASSES
     if !there { discard; }
     color = select(vec3(0.9, 0.35, 0.03), vec3(0.03, 0.25, 0.8), bulk.x >= spray.x);
+#endif
+#ifdef THICKNESS
+    if !there { discard; }
+    color = heat(relative_thickness(bulk, spray, position.xy));
+#endif
+#ifdef EXIT_RAY
+    if !there { discard; }
+    let direction = 0.5 + 0.5 * decode_normal(unpack2x16snorm(exit.z));
+    color = direction * select(1.0, 0.5, (exit.w & DIRECT) != 0u);
+#endif
+#ifdef OVERDRAW
+    let count = textureLoad(amounts, pixel, 0).x;
+    if count < 0.5 { discard; }
+    // 1, 4, 16 and 64 are a quarter, a half, three quarters and all.
+    color = heat(0.25 + log2(count) / 8.0);
 #endif
     return vec4(color, 1.0);
 }

@@ -35,6 +35,8 @@ pub(crate) struct CompositeKey {
     pub(crate) part: CompositePart,
     /// There are other bodies, which may be seen through this one.
     pub(crate) several: bool,
+    /// The thickness that a debug view shows was summed up.
+    pub(crate) accumulated: bool,
 }
 
 /// What is written. Were bodies to write their depth at once, one that is painted later would be
@@ -109,6 +111,7 @@ pub(crate) fn init_composite_pipeline(
                     unfiltered(),
                     texture_2d(TextureSampleType::Uint),
                     uniform_buffer::<Vec4>(true),
+                    unfiltered(),
                 ),
             ),
         ),
@@ -131,6 +134,10 @@ impl SpecializedRenderPipeline for CompositePipeline {
             ("INTERFACES", is(FluidDebugView::Interfaces)),
             ("STATUS", is(FluidDebugView::Status)),
             ("CLASSES", is(FluidDebugView::Classes)),
+            ("THICKNESS", is(FluidDebugView::Thickness)),
+            ("ACCUMULATED", key.accumulated),
+            ("EXIT_RAY", is(FluidDebugView::ExitRay)),
+            ("OVERDRAW", is(FluidDebugView::Overdraw)),
             ("DEPTH_ALONE", !key.part.light()),
             ("SEVERAL", key.several),
             ("DENSE", key.part == CompositePart::DenseDepth),

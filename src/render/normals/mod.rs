@@ -2,11 +2,10 @@
 
 use bevy::{
     asset::load_embedded_asset,
-    camera::{MainPassResolutionOverride, Viewport},
+    camera::Viewport,
     core_pipeline::FullscreenShader,
     prelude::*,
     render::{
-        camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, CachedRenderPipelineId,
@@ -21,10 +20,10 @@ use bevy::{
 
 use super::{
     bindings::{MAX_BLEND, cleared, common_layout, fragment, one_texture_layout},
-    bodies::{Body, ViewBodies},
+    bodies::Body,
     extract::GpuSplats,
     layers::NORMAL_FORMAT,
-    splat::{Class, SPLAT_QUAD, SplatPipeline, draw_splats},
+    splat::{Class, SPLAT_QUAD, SplatPipeline, SplatView, draw_splats},
 };
 
 /// Where normals come from.
@@ -155,11 +154,7 @@ impl SpecializedRenderPipeline for NormalsPipeline {
 
 /// The pass: normals of all bodies.
 pub(crate) fn normals(
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ViewBodies,
-        Option<&MainPassResolutionOverride>,
-    )>,
+    view: ViewQuery<SplatView>,
     fluids: Query<&GpuSplats>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,

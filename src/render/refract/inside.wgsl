@@ -4,14 +4,11 @@
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::optics::environment_sampler
 
-@group(1) @binding(7) var diffuse_map: texture_cube<f32>;
-@group(1) @binding(8) var thickness: texture_2d<f32>;
+@group(1) @binding(6) var diffuse_map: texture_cube<f32>;
+@group(1) @binding(7) var thickness: texture_2d<f32>;
 
 // The mean over all directions of the light that falls on the scene.
 fn even_light() -> vec3<f32> {
-    if body.diffuse_intensity <= 0.0 {
-        return body.even_light;
-    }
     // A texel holds the mean over a hemisphere, weighted by the cosine. Over six opposite ones
     // all that is left is the mean over the sphere (to the fourth order of spherical harmonics).
     var sum = vec3(0.0);
@@ -20,7 +17,8 @@ fn even_light() -> vec3<f32> {
         axis[i >> 1u] = select(-1.0, 1.0, (i & 1u) == 0u);
         sum += textureSampleLevel(diffuse_map, environment_sampler, axis, 0.0).rgb;
     }
-    return body.even_light + sum / 6.0 * body.diffuse_intensity;
+    let around = select(vec3(0.0), sum / 6.0 * body.diffuse_intensity, body.diffuse_intensity > 0.0);
+    return body.even_light + around;
 }
 
 // What a metre of the body sends to the eye.

@@ -77,8 +77,8 @@ impl RefractKey {
 #[derive(Resource)]
 pub(crate) struct RefractPipeline {
     fullscreen: VertexState,
-    /// Environment map, its sampler, layers and normals of bulk and spray, their sampler,
-    /// diffuse environment map, thickness.
+    /// Environment map, its sampler, layers and normals of bulk and spray, diffuse environment
+    /// map, thickness.
     pub(crate) layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
@@ -102,7 +102,6 @@ pub(crate) fn init_refract_pipeline(
                     unfiltered(),
                     unfiltered(),
                     unfiltered(),
-                    sampler(SamplerBindingType::NonFiltering),
                     texture_cube(TextureSampleType::Float { filterable: true }),
                     unfiltered(),
                 ),

@@ -2,16 +2,17 @@
 
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{
-    depth_map, device_from_view, encode_normal, farthest_scene_depth, has_back, has_front,
-    nearest_scene_depth, ndc_from_pixel, pixel_from_ndc, view_depth, view_from_device, view_ray,
+    depth_map, device_from_view, encode_normal, farthest_scene_depth, ndc_from_pixel,
+    pixel_from_ndc, view_depth, view_from_device, view_ray,
 }
 #import bevy_fluid::render::medium::{reflected, transmitted}
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
 #import bevy_fluid::render::refract::inside::{accumulated_length, medium_source}
 #import bevy_fluid::render::refract::layers::{
-    BACK, BULK, FRONT, SPRAY, layer_depth, layer_normal, load_layers, load_normal, on_screen,
+    BACK, BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen,
 }
 #import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
+#import bevy_fluid::render::straight::layered_length
 #import bevy_fluid::render::types::{
     INSIDE_FRONT, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET, STATUS_OPAQUE,
     STATUS_TOTAL_REFLECTION,
@@ -116,15 +117,7 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     return true;
 }
 
-// (front, back) of one class at a pixel in device depth, cut short by opaque things.
-fn straight_span(layers: vec2<f32>, pixel: vec2<i32>) -> vec2<f32> {
-    if !has_front(layers) || !has_back(layers) {
-        return vec2(0.0);
-    }
-    return vec2(layers.x, min(max(-layers.y, nearest_scene_depth(pixel)), layers.x));
-}
-
-// The straight way through the liquid at a pixel; where bulk and spray overlap it counts once.
+// The straight way through the liquid at a pixel.
 fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
 #ifdef ACCUMULATED
     return accumulated_length(pixel);
@@ -132,22 +125,8 @@ fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
     // Farther than light comes.
     return 1e30;
 #else
-    let bulk = straight_span(load_layers(BULK, pixel), pixel);
-    let spray = straight_span(load_layers(SPRAY, pixel), pixel);
-    let both = vec2(min(bulk.x, spray.x), max(bulk.y, spray.y));
-    var length = span_length(bulk, ndc) + span_length(spray, ndc);
-    if both.x > both.y {
-        length -= span_length(both, ndc);
-    }
-    return length;
+    return layered_length(load_layers(BULK, pixel), load_layers(SPRAY, pixel), pixel, ndc);
 #endif
-}
-
-fn span_length(span: vec2<f32>, ndc: vec2<f32>) -> f32 {
-    if span.x <= 0.0 {
-        return 0.0;
-    }
-    return distance(view_from_device(ndc, span.y), view_from_device(ndc, span.x));
 }
 
 // Whether a point is in the liquid of a class. Of the spray only its hindmost droplet counts: there
@@ -158,71 +137,67 @@ fn in_liquid(kind: u32, position: vec3<f32>) -> bool {
         return false;
     }
     let map = depth_map(ndc_from_pixel(pixel));
-    let front = layer_depth(kind, FRONT, pixel, map);
-    let back = layer_depth(kind, BACK, pixel, map);
+    let depths = layer_depths(kind, pixel, map);
     let z = -position.z;
-    let to_back = view_depth(map, back) - z;
-    return front > 0.0 && back > 0.0 && z > view_depth(map, front)
+    let to_back = view_depth(map, depths.y) - z;
+    return depths.x > 0.0 && depths.y > 0.0 && z > view_depth(map, depths.x)
         && to_back > 0.02 * body.radius && (kind == BULK || to_back < 2.0 * body.radius);
 }
 
-// Follows the path inside and outside until the budget is spent or nothing more is met.
+// Follows the path until the budget is spent or nothing more is met. Every turn looks for one
+// interface: the way out of the liquid, or after that the way into the other class.
 fn trace(path: ptr<function, Path>) {
+    var leaving = true;
     var both = false;
     var may_enter = BOTH_CLASSES;
-    for (var segment = 0u; segment < INTERFACES; segment += 1u) {
+    for (var turn = 0u; turn < INTERFACES + u32(BOTH_CLASSES); turn += 1u) {
         if (*path).interfaces >= INTERFACES {
             return;
         }
         let found = search(
-            Target((*path).kind, true, both, false), (*path).position, (*path).direction,
+            Target((*path).kind, leaving, both, false), (*path).position, (*path).direction,
         );
-        if found.status == STATUS_INVALID || found.status == STATUS_NO_BRACKET {
+        let lost = found.status == STATUS_INVALID || found.status == STATUS_NO_BRACKET;
+        if select(found.status != STATUS_HIT, lost, leaving) {
             note(path, found.status);
             return;
         }
         let hit = (*path).position + found.t * (*path).direction;
         let n = layer_normal((*path).kind, found.side, pixel_of(hit));
-        if stops(path, found.t + contact((*path).direction, n), true) {
+        let wetted = select(0.0, contact((*path).direction, n), leaving);
+        if stops(path, found.t + wetted, leaving) {
             return;
         }
-        pass_through(path, found.t);
         (*path).position = hit;
-        if BOTH_CLASSES && in_liquid(1u - (*path).kind, hit) {
-            // Bulk and spray overlap: no interface lies between them.
-            (*path).kind = 1u - (*path).kind;
-            may_enter = false;
-            both = false;
-            continue;
+        if leaving {
+            pass_through(path, found.t);
+            if BOTH_CLASSES && in_liquid(1u - (*path).kind, hit) {
+                // Bulk and spray overlap: no interface lies between them.
+                (*path).kind = 1u - (*path).kind;
+                may_enter = false;
+                both = false;
+                continue;
+            }
         }
-        if !cross_interface(path, n, false) {
+        if !cross_interface(path, n, !leaving) {
             note(path, STATUS_TOTAL_REFLECTION);
             both = true;
-            continue;
-        }
-        let on_border = !on_screen(pixel_of((*path).position));
-        note(path, select(found.status, STATUS_LEFT_LAYER, on_border));
-        if !may_enter || (*path).interfaces >= INTERFACES {
-            return;
-        }
-        may_enter = false;
-        let kind = 1u - (*path).kind;
-        let next = search(Target(kind, false, false, false), (*path).position, (*path).direction);
-        if next.status != STATUS_HIT {
-            note(path, next.status);
-            return;
-        }
-        if stops(path, next.t, false) {
-            return;
-        }
-        note(path, STATUS_HIT);
-        advance(path, next.t);
-        (*path).kind = kind;
-        let entry = layer_normal(kind, FRONT, pixel_of((*path).position));
-        if !cross_interface(path, entry, true) {
+            if leaving {
+                continue;
+            }
             return;
         }
         both = false;
+        let on_border = leaving && !on_screen(pixel_of(hit));
+        note(path, select(found.status, STATUS_LEFT_LAYER, on_border));
+        if leaving {
+            if !may_enter {
+                return;
+            }
+            may_enter = false;
+            (*path).kind = 1u - (*path).kind;
+        }
+        leaving = !leaving;
     }
 }
 

@@ -4,7 +4,7 @@
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{pixel_from_ndc, view_depth}
 #import bevy_fluid::render::refract::layers::{
-    BACK, FRONT, clamp_to_view, layer_depth, on_screen, scene_depth_at,
+    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at,
 }
 #import bevy_fluid::render::track::{
     Track, device_at, distance_from_s, in_device_depth, s_from_distance, tolerance, track_of, w_at,
@@ -66,24 +66,20 @@ fn gap_at(to: Target, track: Track, s: f32) -> Gap {
         out.value = select(-1.0, depth - at.z, out.known);
         return out;
     }
+    let depths = layer_depths(to.kind, asked, track.map);
     if !to.leaving {
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        out.known = front > 0.0 && out.seen;
-        out.value = select(-1.0, front - at.z, out.known);
+        out.known = depths.x > 0.0 && out.seen;
+        out.value = select(-1.0, depths.x - at.z, out.known);
         return out;
     }
-    let back = layer_depth(to.kind, BACK, asked, track.map);
-    if back <= 0.0 {
+    if depths.y <= 0.0 {
         return out;
     }
     out.known = true;
-    out.value = back - at.z;
-    if to.both {
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        if front > 0.0 && at.z - front > out.value {
-            out.value = at.z - front;
-            out.side = FRONT;
-        }
+    out.value = depths.y - at.z;
+    if to.both && depths.x > 0.0 && at.z - depths.x > out.value {
+        out.value = at.z - depths.x;
+        out.side = FRONT;
     }
     return out;
 }
@@ -170,21 +166,21 @@ fn refine(to: Target, track: Track, start: Bracket, left: i32) -> Found {
     return Found(status, distance_from_s(track, b.high), b.high_gap.side);
 }
 
+// Rays that have come so far meet nothing. Unit: m.
+const FARTHEST: f32 = 1e30;
+
 // Expanding steps until the gap changes sign, then `refine`. `guess` is a distance.
 fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
     var b = Bracket(0.0, start, 0.0, start);
-    var left = EVALUATIONS;
+    let coarse = i32(body.coarse_samples);
+    var left = EVALUATIONS + coarse;
     var t = 0.0;
-    var step = guess;
-    if body.coarse_samples > 0u {
-        // As far as twice the guess, evenly.
-        step = 2.0 * guess / f32(body.coarse_samples);
-        left += i32(body.coarse_samples);
-    }
+    // As far as twice the guess, evenly.
+    var step = select(guess, 2.0 * guess / f32(coarse), coarse > 0);
     // The last three evaluations are kept for refining.
     let expansions = left - 3;
     var bracketed = false;
-    for (var i = 0; i < expansions; i += 1) {
+    for (var i = 0; (i < expansions) & (t < FARTHEST); i += 1) {
         t += step;
         let s = s_from_distance(track, t);
         let gap = gap_at(to, track, s);
@@ -203,7 +199,7 @@ fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
         if !gap.seen && !to.leaving {
             break;
         }
-        if u32(i + 1) >= body.coarse_samples {
+        if i + 1 >= coarse {
             step = max(step, t);
         }
     }
@@ -265,10 +261,9 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
     if to.both {
         // On a surface by construction: take the first step on trust.
         let asked = clamp_to_view(pixel_from_ndc(track.start.xy));
-        let back = layer_depth(to.kind, BACK, asked, track.map);
-        let front = layer_depth(to.kind, FRONT, asked, track.map);
-        let deep = view_depth(track.map, back) - view_depth(track.map, front);
-        guess = max(guess, select(0.0, deep, front > 0.0));
+        let depths = layer_depths(to.kind, asked, track.map);
+        let deep = view_depth(track.map, depths.y) - view_depth(track.map, depths.x);
+        guess = max(guess, select(0.0, deep, depths.x > 0.0));
         start.value = min(start.value, -in_device_depth(track, 0.01 * body.radius, track.start.z));
     } else if to.leaving && start.value >= -start.near {
         // Thinner than can be told.

@@ -1,12 +1,14 @@
 // Planes fitted to points in view space by total least squares: thesis 4.3.
 
 #import bevy_fluid::render::functions::{
-    device_from_view, encode_normal, view_from_device, view_ray,
+    device_from_view, encode_normal, normal_from_slope, view_from_device, view_ray,
 }
 #import bevy_fluid::render::bindings::view
+#import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
 
-const SPREAD: f32 = 1e-6;
+// Sums of squares in f32 are off by 1e-7: below this their eigenvectors are off by a thousandth.
+const SPREAD: f32 = 1e-4;
 
 struct Output {
     @location(0) layers: vec4<f32>,
@@ -94,7 +96,7 @@ struct Plane {
     good: bool,
     // Device depth where the pixel's ray meets it.
     depth: f32,
-    // Towards the viewer.
+    // Towards the viewer; of a good plane.
     normal: vec3<f32>,
 }
 
@@ -110,7 +112,7 @@ fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
     let facing = dot(n, ray.direction);
     // A plane along the ray has no depth there, and f32 tells no plane from a line below the spread.
     out.good = m.count >= 3.0 && least.spread > SPREAD && abs(facing) > 1e-4;
-    out.normal = select(-ray.direction, select(n, -n, facing > 0.0), out.good);
+    out.normal = select(n, -n, facing > 0.0);
     let t = dot(n, mean) / select(1.0, facing, out.good);
     out.depth = device_from_view(origin + t * ray.direction).z;
     return out;
@@ -150,7 +152,15 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     );
     out.layers = vec4(layers, 0.0, 0.0);
 #ifdef NORMALS
-    out.normals = vec4(encode_normal(front_plane.normal), encode_normal(back_plane.normal));
+    // Where there is no good plane the pixels beside tell the slopes.
+    let x = one_sided_slope(window.pixel, window.center.xy, vec2(1, 0));
+    let y = one_sided_slope(window.pixel, window.center.xy, vec2(0, 1));
+    let front_slope = normal_from_slope(window.ndc, window.center.x, vec2(x.x, y.x));
+    let back_slope = normal_from_slope(window.ndc, -window.center.y, -vec2(x.y, y.y));
+    out.normals = vec4(
+        encode_normal(select(front_slope, front_plane.normal, front_plane.good)),
+        encode_normal(select(back_slope, back_plane.normal, back_plane.good)),
+    );
 #endif
     return out;
 }

@@ -51,25 +51,22 @@ fn window_at(position: vec2<f32>) -> Window {
     out.valid = valid_layers(out.center.xy);
     out.depth = view_depths(out.map, out.center.xy);
     out.steepness = depth_slope(out.map, abs(out.center.xy)) / body.range;
-    out.spacing = 1;
-    out.half_taps = f32(#{HALF_TAPS});
-    if body.window_radii > 0.0 {
-        let d = select(-out.center.y, out.center.x, out.valid.x);
-        let scale = pixels_per_metre(view_from_device(out.ndc, d));
-        let half_width = max(body.window_radii * body.radius * scale, 1.0);
-        out.spacing = clamp(i32(ceil(half_width / out.half_taps)), 1, MAX_SPACING);
-        out.half_taps = min(half_width / f32(out.spacing), out.half_taps);
-    }
+    let d = select(-out.center.y, out.center.x, out.valid.x);
+    let scale = pixels_per_metre(view_from_device(out.ndc, d));
+    let half_taps = f32(#{HALF_TAPS});
+    let half_width = max(body.window_radii * body.radius * scale, 1.0);
+    let spacing = clamp(i32(ceil(half_width / half_taps)), 1, MAX_SPACING);
+    let in_radii = body.window_radii > 0.0;
+    out.spacing = select(1, spacing, in_radii);
+    out.half_taps = select(half_taps, min(half_width / f32(spacing), half_taps), in_radii);
     return out;
 }
 
 // How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
 // window grows by a pixel.
 fn edge_weight(window: Window, tap: i32) -> f32 {
-    if body.window_radii <= 0.0 {
-        return 1.0;
-    }
-    return clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
+    let faded = clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
+    return select(1.0, faded, body.window_radii > 0.0);
 }
 
 // A tap's values, nothing outside of the viewport.

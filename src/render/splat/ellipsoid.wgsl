@@ -135,6 +135,8 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
 
 #ifdef VIEW_SPACE
     let in_view_space = true;
+#else ifdef NONE_CUT
+    let in_view_space = false;
 #else
     // Some of it has z > w: nearer than the near plane.
     let in_view_space = z.w - w.w + length(z.xyz - w.xyz) >= 0.0;
@@ -173,10 +175,14 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
 }
 
 fn intersect(in: EllipsoidVertex) -> Intersection {
+#ifdef NONE_CUT
+    return intersect_quadric(in);
+#else
     if in.form == 0u {
         return intersect_quadric(in);
     }
     return intersect_near(in);
+#endif
 }
 
 // The unit sphere's quadratic form.

@@ -1,5 +1,7 @@
 //! Ellipsoids into depth layers: one draw per class, both depths from one quadratic.
 
+mod overdraw;
+
 use bevy::{
     asset::load_embedded_asset,
     camera::{MainPassResolutionOverride, Viewport},
@@ -14,7 +16,7 @@ use bevy::{
             CompareFunction, DepthStencilState, LoadOp, Operations, PipelineCache, PrimitiveState,
             PrimitiveTopology, RenderPassDepthStencilAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp,
-            VertexState,
+            TextureFormat, VertexState,
             binding_types::{storage_buffer_read_only_sized, texture_depth_2d, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
@@ -24,13 +26,14 @@ use bevy::{
 };
 
 use super::{
-    bindings::{MAX_BLEND, NO_LAYERS, cleared, common_layout, defs, fragment},
+    bindings::{MAX_BLEND, NO_LAYERS, SUM_BLEND, cleared, common_layout, defs, fragment},
     bodies::{Body, ViewBodies},
     extract::GpuSplats,
     gpu_types::GpuFluid,
     layers::DEPTH_FORMAT,
     support::LAYER_FORMAT,
 };
+pub(crate) use overdraw::overdraw;
 
 /// What a draw of splats keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +46,17 @@ pub(crate) enum SplatOutput {
     FrontDepth,
     /// The farthest back, by the depth test.
     BackDepth,
+    /// How many there are, summed up in a texture of this format.
+    Count(TextureFormat),
+}
+
+/// A draw of splats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SplatKey {
+    pub(crate) output: SplatOutput,
+    /// Some of them may be cut by the near plane. Mostly none is, and without the code for those
+    /// the others are drawn in half the time.
+    pub(crate) cut: bool,
 }
 
 #[derive(Resource)]
@@ -108,9 +122,9 @@ pub(crate) const SPLAT_QUAD: PrimitiveState = PrimitiveState {
 };
 
 impl SpecializedRenderPipeline for SplatPipeline {
-    type Key = SplatOutput;
+    type Key = SplatKey;
 
-    fn specialize(&self, output: SplatOutput) -> RenderPipelineDescriptor {
+    fn specialize(&self, SplatKey { output, cut }: SplatKey) -> RenderPipelineDescriptor {
         let shader_defs = defs([
             (
                 "MAX_BLEND",
@@ -118,13 +132,16 @@ impl SpecializedRenderPipeline for SplatPipeline {
             ),
             ("DEPTH_FRONT", output == SplatOutput::FrontDepth),
             ("DEPTH_BACK", output == SplatOutput::BackDepth),
+            ("COUNT", matches!(output, SplatOutput::Count(_))),
+            ("NONE_CUT", !cut),
         ]);
-        let (formats, compare): (&[_], _) = match output {
-            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], None),
-            SplatOutput::FrontDepth => (&[], Some(CompareFunction::Greater)),
-            SplatOutput::BackDepth => (&[], Some(CompareFunction::Less)),
+        let (formats, blend, compare): (&[_], _, _) = match output {
+            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], MAX_BLEND, None),
+            SplatOutput::FrontDepth => (&[], MAX_BLEND, Some(CompareFunction::Greater)),
+            SplatOutput::BackDepth => (&[], MAX_BLEND, Some(CompareFunction::Less)),
+            SplatOutput::Count(format) => (&[format], SUM_BLEND, None),
         };
-        let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(MAX_BLEND));
+        let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(blend));
         if output == SplatOutput::Fronts {
             for target in fragment.targets.iter_mut().flatten() {
                 target.write_mask = ColorWrites::RED;
@@ -200,13 +217,66 @@ pub(crate) fn draw_splats<'a>(
     }
 }
 
+/// What a pass that draws splats asks of a view.
+pub(crate) type SplatView = (
+    &'static ExtractedCamera,
+    &'static ViewBodies,
+    Option<&'static MainPassResolutionOverride>,
+);
+
+/// A pass that sums something up over splats, into a texture of every body that has one.
+pub(crate) struct SplatSum<'a, 'w, 's> {
+    /// Of the pass and its time span.
+    pub(crate) label: &'static str,
+    pub(crate) fluids: &'a Query<'w, 's, &'static GpuSplats>,
+    pub(crate) cache: &'a PipelineCache,
+    pub(crate) classes: &'a [Class],
+}
+
+impl SplatSum<'_, '_, '_> {
+    /// `sum` picks a body's texture and the pipeline that draws to it.
+    pub(crate) fn draw(
+        &self,
+        (camera, bodies, resolution): (
+            &ExtractedCamera,
+            &ViewBodies,
+            Option<&MainPassResolutionOverride>,
+        ),
+        ctx: &mut RenderContext,
+        sum: impl Fn(&Body) -> Option<(&CachedTexture, CachedRenderPipelineId)>,
+    ) {
+        let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+        let recorder = ctx.diagnostic_recorder();
+        let recorder = recorder.as_deref();
+        let span = recorder.time_span(ctx.command_encoder(), self.label);
+        for body in bodies.ready() {
+            let Some((target, pipeline)) = sum(body)
+                .and_then(|(target, id)| Some((target, self.cache.get_render_pipeline(id)?)))
+            else {
+                continue;
+            };
+            let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+                label: Some(self.label),
+                color_attachments: &[Some(cleared(&target.default_view, [0.0; 4]))],
+                ..default()
+            });
+            if let Some(viewport) = &viewport {
+                pass.set_camera_viewport(viewport);
+            }
+            body.set_scissor(&mut pass);
+            pass.set_render_pipeline(pipeline);
+            body.set_common(&mut pass);
+            for &class in self.classes {
+                draw_splats(&mut pass, body, class, self.fluids);
+            }
+        }
+        span.end(ctx.command_encoder());
+    }
+}
+
 /// The pass: splats of all bodies into their layers.
 pub(crate) fn splat(
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ViewBodies,
-        Option<&MainPassResolutionOverride>,
-    )>,
+    view: ViewQuery<SplatView>,
     fluids: Query<&GpuSplats>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,

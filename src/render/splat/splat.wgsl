@@ -29,6 +29,16 @@ fn fragment(in: EllipsoidVertex) -> @location(0) vec2<f32> {
 }
 #endif
 
+#ifdef COUNT
+@fragment
+fn fragment(in: EllipsoidVertex) -> @location(0) f32 {
+    if !intersect(in).hit {
+        discard;
+    }
+    return 1.0;
+}
+#endif
+
 #ifdef DEPTH_FRONT
 @fragment
 fn fragment(in: EllipsoidVertex) -> @builtin(frag_depth) f32 {

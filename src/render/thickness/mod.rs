@@ -2,14 +2,10 @@
 
 use bevy::{
     asset::load_embedded_asset,
-    camera::{MainPassResolutionOverride, Viewport},
     prelude::*,
     render::{
-        camera::ExtractedCamera,
-        diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupLayoutDescriptor, BlendComponent, BlendFactor, BlendOperation, BlendState,
-            PipelineCache, RenderPassDescriptor, RenderPipelineDescriptor,
+            BindGroupLayoutDescriptor, PipelineCache, RenderPipelineDescriptor,
             SpecializedRenderPipeline, TextureFormat, VertexState,
         },
         renderer::{RenderContext, ViewQuery},
@@ -18,23 +14,9 @@ use bevy::{
 };
 
 use super::{
-    bindings::{cleared, common_layout, defs, fragment},
-    bodies::ViewBodies,
+    bindings::{SUM_BLEND, common_layout, defs, fragment},
     extract::GpuSplats,
-    splat::{Class, SPLAT_QUAD, SplatPipeline, draw_splats},
-};
-
-/// The sum of what is there and what is drawn.
-const SUM: BlendState = {
-    let sum = BlendComponent {
-        src_factor: BlendFactor::One,
-        dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
-    };
-    BlendState {
-        color: sum,
-        alpha: sum,
-    }
+    splat::{Class, SPLAT_QUAD, SplatPipeline, SplatSum, SplatView},
 };
 
 #[derive(Resource)]
@@ -72,7 +54,12 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
                 buffers: vec![],
             },
             primitive: SPLAT_QUAD,
-            fragment: Some(fragment(&self.shader, shader_defs, &[format], Some(SUM))),
+            fragment: Some(fragment(
+                &self.shader,
+                shader_defs,
+                &[format],
+                Some(SUM_BLEND),
+            )),
             ..default()
         }
     }
@@ -80,41 +67,18 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
 
 /// The pass: all bodies that ask for it.
 pub(crate) fn thickness(
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ViewBodies,
-        Option<&MainPassResolutionOverride>,
-    )>,
-    fluids: Query<&GpuSplats>,
+    view: ViewQuery<SplatView>,
+    fluids: Query<&'static GpuSplats>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (camera, bodies, resolution) = view.into_inner();
-    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
-    let recorder = ctx.diagnostic_recorder();
-    let recorder = recorder.as_deref();
-    let span = recorder.time_span(ctx.command_encoder(), "fluid_thickness");
-    for body in bodies.ready() {
-        let (Some(target), Some(pipeline)) = (
-            &body.layers.thickness,
-            body.pipelines
-                .thickness
-                .and_then(|id| cache.get_render_pipeline(id)),
-        ) else {
-            continue;
-        };
-        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-            label: Some("fluid_thickness"),
-            color_attachments: &[Some(cleared(&target.default_view, [0.0; 4]))],
-            ..default()
-        });
-        if let Some(viewport) = &viewport {
-            pass.set_camera_viewport(viewport);
-        }
-        body.set_scissor(&mut pass);
-        pass.set_render_pipeline(pipeline);
-        body.set_common(&mut pass);
-        draw_splats(&mut pass, body, Class::All, &fluids);
-    }
-    span.end(ctx.command_encoder());
+    let sum = SplatSum {
+        label: "fluid_thickness",
+        fluids: &fluids,
+        cache: &cache,
+        classes: &[Class::All],
+    };
+    sum.draw(view.into_inner(), &mut ctx, |body| {
+        Some((body.layers.thickness.as_ref()?, body.pipelines.thickness?))
+    });
 }

@@ -39,6 +39,11 @@ pub(super) fn text(table: &Table) -> String {
     speed(table, &mut aims);
     searches(table, &mut aims);
     refractions(table, &mut aims);
+    aims.extend(Aim::at_most(
+        "closed form of a medium: relative error, worst medium",
+        worst_of(table, "relative_error_max"),
+        1e-6,
+    ));
     if aims.is_empty() {
         return String::new();
     }
@@ -64,6 +69,12 @@ fn worst(
         .reduce(f64::max)
 }
 
+/// The worst of a quantity over everything.
+fn worst_of(table: &Table, quantity: &str) -> Option<f64> {
+    let rows = table.rows().iter().filter(|row| row.quantity == quantity);
+    rows.map(|row| row.value).reduce(f64::max)
+}
+
 fn layers(table: &Table, aims: &mut Vec<Aim>) {
     let worst = |quantity, region| worst(table, ("layers-bulk", ""), quantity, region, |_| true);
     aims.extend(Aim::at_most(
@@ -82,9 +93,9 @@ fn layers(table: &Table, aims: &mut Vec<Aim>) {
     ));
 }
 
-/// The default's smoothing as the list of smoothings has it.
+/// The default's smoothing, as the table calls it.
 fn default_smoothing() -> (&'static str, String) {
-    let method = methods::smoothings(true).swap_remove(1);
+    let method = methods::default_smoothing();
     (method.name, method.parameters)
 }
 

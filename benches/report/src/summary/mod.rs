@@ -32,7 +32,7 @@ fn text(table: &Table, adapter: &str) -> String {
          holds every value.\n",
         std::thread::available_parallelism().map_or(1, usize::from),
     );
-    let parts: [Part; 9] = [
+    let parts: [Part; 10] = [
         ("What was aimed for", aims::text(table)),
         ("Presets", presets(table)),
         ("Where the time goes", passes(table)),
@@ -40,6 +40,7 @@ fn text(table: &Table, adapter: &str) -> String {
         ("How many refractions", refractions(table)),
         ("Layers or search: what is to blame", ablation(table)),
         ("Searches in exact layers", searches(table)),
+        ("What is inside", inside(table)),
         ("Where each method fails", failures::text(table)),
         ("The thesis's tables", published::text(table)),
     ];
@@ -244,4 +245,50 @@ fn searches(table: &Table) -> String {
         }
     }
     rows.finish()
+}
+
+/// The closed form of a medium against its differential equation, and thickness against the truth.
+fn inside(table: &Table) -> String {
+    let mut forms = Rows::new([
+        "closed form, medium",
+        "relative error",
+        "ns",
+        "ns of the march",
+    ]);
+    let mut lengths = Rows::new([
+        "scene, thickness",
+        "ms a frame",
+        "offset in r",
+        "RMSE in r",
+        "RMSE, one puff",
+        "RMSE, two in line",
+    ]);
+    let mut any = false;
+    for scene in table.scenes() {
+        for (method, parameters) in table.methods(scene, "relative_error_max") {
+            let value = |quantity| table.value(scene, (&method, &parameters), quantity, "all");
+            let quantities = ["relative_error_max", "time_closed_form", "time_march"];
+            forms.numbers(&parameters, quantities.map(value));
+        }
+        for (method, parameters) in table.methods(scene, "thickness_rmse") {
+            any = true;
+            let value =
+                |quantity, region| table.value(scene, (&method, &parameters), quantity, region);
+            lengths.numbers(
+                &format!("{scene}, {parameters}"),
+                [
+                    value("time_gpu", "all"),
+                    value("thickness_offset", "all"),
+                    value("thickness_rmse", "all"),
+                    value("thickness_rmse", "single"),
+                    value("thickness_rmse", "behind"),
+                ],
+            );
+        }
+    }
+    if any {
+        format!("{}\n{}", forms.finish(), lengths.finish())
+    } else {
+        String::new()
+    }
 }

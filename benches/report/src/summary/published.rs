@@ -1,7 +1,7 @@
 //! The thesis's tables in their own layout, with ours beside the published figures.
 
 use crate::{
-    Table, methods,
+    Table, methods, scenes,
     thesis::{BILATERAL, EARLIER, METHOD, PASSES, PLANES, Published},
 };
 
@@ -84,7 +84,12 @@ fn smoothing(table: &Table, published: &[[f64; 4]; 4], bilaterally: bool) -> Opt
     let mut any = false;
     for (row, ways) in published.iter().zip(ways.chunks(4)) {
         let cells = row.iter().zip(ways).flat_map(|(&published, way)| {
-            let ours = table.value("wave", (way.name, &way.parameters), "time_smooth", "all");
+            let ours = table.value(
+                scenes::WINDOWS,
+                (way.name, &way.parameters),
+                "time_smooth",
+                "all",
+            );
             any |= ours.is_some();
             [Some(published), ours]
         });

@@ -2,6 +2,8 @@
 
 use bevy::{camera::Hdr, math::bounding::Aabb3d, prelude::*};
 use bevy_panorbit_camera::PanOrbitCamera;
+/// What moves the cameras of [`orbit_camera`], in `PostUpdate`.
+pub use bevy_panorbit_camera::PanOrbitCameraSystemSet;
 
 /// From the box towards the eye: from the right and a little above.
 const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.42, 1.0);

@@ -42,8 +42,13 @@ pub fn slab(radius: f64, degrees: f64) -> Scene {
 /// A plane whose normal is tilted upwards by `degrees` (0 to 85) from the line of sight: the top
 /// of a plate of 2 × 4 m, eight radii thick.
 pub fn tilted_plane(radius: f64, degrees: f64) -> Scene {
+    tilted_plate(radius, degrees, DVec2::new(1.0, 2.0))
+}
+
+/// [`tilted_plane`] as the top of a plate of half so many metres, across and along the tilt.
+pub fn tilted_plate(radius: f64, degrees: f64, half: DVec2) -> Scene {
     let turn = DQuat::from_rotation_x(-degrees.to_radians());
-    let half = dvec3(1.0, 2.0, 4.0 * radius);
+    let half = half.extend(4.0 * radius);
     let body = Cuboid {
         // The plane itself goes through the origin.
         center: turn * DVec3::NEG_Z * half.z,

@@ -12,7 +12,7 @@ use crate::{Camera, Lens, Surface};
 
 pub use catalogue::{
     DEPTH_STEP, all, depth_step, half_filled_box, pool_and_droplets, rippled_pool, slab, sphere,
-    thin_sheet, tilted_plane, two_spheres,
+    thin_sheet, tilted_plane, tilted_plate, two_spheres,
 };
 pub use sampling::{fill_cuboid, fill_pool, fill_sphere};
 

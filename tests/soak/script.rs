@@ -1,24 +1,20 @@
-//! A long run in which everything changes all the time: half a minute of it with every test run, ten
-//! minutes with `cargo test --release --workspace --test soak -- --ignored soak`.
+//! What changes in which frame.
 
-mod common;
-
-use std::time::{Duration, Instant};
-
-use bevy::{camera::Viewport, prelude::*, render::renderer::RenderDevice};
+use bevy::{camera::Viewport, prelude::*};
 use bevy_fluid::{
     Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NormalAverage, PlaneFit, Refractions,
     ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, prelude::*,
 };
-use common::*;
-use fluid_stage::{capture, resize, step, validation_errors};
+use fluid_stage::{headless_app, resize, step, validation_errors};
+
+use crate::common::*;
 
 /// Frames after which everything has been asked for once, and comes again.
-const CYCLE: u32 = 96;
-const SIZES: [UVec2; 4] = [uvec2(64, 48), uvec2(33, 65), uvec2(1, 1), uvec2(96, 64)];
-const RADIUS: f32 = 0.1;
+pub(crate) const CYCLE: u32 = 96;
+pub(crate) const SIZES: [UVec2; 4] = [uvec2(64, 48), uvec2(33, 65), uvec2(1, 1), uvec2(96, 64)];
+pub(crate) const RADIUS: f32 = 0.1;
 
-fn settings(i: u32) -> ScreenSpaceFluid {
+pub(crate) fn settings(i: u32) -> ScreenSpaceFluid {
     let smoothed = |smoothing| ScreenSpaceFluid {
         smoothing,
         ..default()
@@ -54,7 +50,7 @@ fn settings(i: u32) -> ScreenSpaceFluid {
 }
 
 /// A block and droplets, as many particles as `count`, elsewhere in every frame.
-fn particles(frame: u32, count: usize) -> impl Iterator<Item = Vec3> {
+pub(crate) fn particles(frame: u32, count: usize) -> impl Iterator<Item = Vec3> {
     let mut random = Random(u64::from(frame) + 1);
     (0..count).map(move |i| {
         let cell = vec3((i % 8) as f32, (i / 64) as f32, (i / 8 % 8) as f32);
@@ -67,9 +63,10 @@ fn particles(frame: u32, count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-fn start(size: UVec2) -> App {
+/// An app for the script to play in; without the plugin it is Bevy alone, with the same entities.
+pub(crate) fn start(with_fluids: bool) -> App {
     let view = View {
-        size,
+        size: SIZES[0],
         ..View::new(
             64,
             Lens::Perspective {
@@ -78,11 +75,19 @@ fn start(size: UVec2) -> App {
             },
         )
     };
-    show(&view, ScreenSpaceFluid::default(), |world| {
+    let mut app = headless_app(view.size, |app| {
+        if with_fluids {
+            app.add_plugins(FluidPlugin::default());
+        }
+        let world = app.world_mut();
+        world.spawn(view.camera(ScreenSpaceFluid::default()));
         world.spawn((DirectionalLight::default(), Transform::IDENTITY));
         let wall = Transform::from_xyz(0.0, 0.4, -8.0);
         spawn_box(world, vec3(3.0, 1.0, 0.1), wall);
     })
+    .unwrap();
+    settle(&mut app).unwrap();
+    app
 }
 
 /// What comes and goes.
@@ -90,6 +95,49 @@ fn start(size: UVec2) -> App {
 struct Cast {
     second_camera: Option<Entity>,
     fluids: Vec<Entity>,
+}
+
+/// An app in which the script is played.
+pub(crate) struct Play {
+    pub(crate) app: App,
+    cast: Cast,
+    first_camera: Entity,
+    pub(crate) cycles: u32,
+}
+
+impl Play {
+    pub(crate) fn new(with_fluids: bool) -> Self {
+        let mut app = start(with_fluids);
+        let first_camera = only::<Camera3d>(&mut app);
+        Self {
+            app,
+            cast: Cast::default(),
+            first_camera,
+            cycles: 0,
+        }
+    }
+
+    /// Plays the whole script once; no frame may be invalid.
+    pub(crate) fn cycle(&mut self) {
+        for frame in 0..CYCLE {
+            change(&mut self.app, &mut self.cast, self.first_camera, frame);
+            step(&mut self.app, 1);
+        }
+        assert_eq!(validation_errors(&self.app), [""; 0]);
+        self.cycles += 1;
+    }
+
+    /// The app with its first camera alone.
+    pub(crate) fn end(mut self) -> App {
+        let world = self.app.world_mut();
+        for entity in self.cast.fluids.drain(..).chain(self.cast.second_camera) {
+            world.despawn(entity);
+        }
+        world
+            .entity_mut(self.first_camera)
+            .remove::<FluidDebugView>();
+        self.app
+    }
 }
 
 /// Everything that changes in a frame; the same in every cycle.
@@ -158,94 +206,4 @@ fn change(app: &mut App, cast: &mut Cast, first_camera: Entity, frame: u32) {
             ..default()
         });
     }
-}
-
-/// Bytes that the GPU's allocator has handed out: every texture and buffer there is.
-fn allocated(app: &App) -> u64 {
-    let device = app.world().resource::<RenderDevice>();
-    let report = device.wgpu_device().generate_allocator_report();
-    report
-        .expect("Vulkan's allocator reports")
-        .total_allocated_bytes
-}
-
-/// Bytes of this process that are in memory, whatever they are for.
-fn resident() -> u64 {
-    let statm = std::fs::read_to_string("/proc/self/statm").unwrap();
-    let pages: u64 = statm.split(' ').nth(1).unwrap().parse().unwrap();
-    4096 * pages
-}
-
-/// Sets a scene that is the same after any run, and shows it.
-fn last_frame(app: &mut App) -> image::RgbaImage {
-    resize(app, SIZES[0]).unwrap();
-    look(
-        app,
-        (ScreenSpaceFluid::default(), Msaa::Off, Transform::IDENTITY),
-    );
-    let positions = particles(0, 500).collect();
-    pour(
-        app,
-        (FluidParticles::new(positions, RADIUS), FluidMaterial::INK),
-    );
-    assert_sound(app);
-    capture(app).unwrap()
-}
-
-fn soak(duration: Duration) {
-    let began = Instant::now();
-    let mut app = start(SIZES[0]);
-    let first_camera = only::<Camera3d>(&mut app);
-    let mut cast = Cast::default();
-    let [mut samples, mut residents] = [(); 2].map(|()| Vec::new());
-    let mut cycles = 0;
-    while began.elapsed() < duration || cycles < 4 {
-        for frame in 0..CYCLE {
-            change(&mut app, &mut cast, first_camera, frame);
-            step(&mut app, 1);
-        }
-        assert_eq!(validation_errors(&app), [""; 0]);
-        cycles += 1;
-        // All pipelines are made in the first cycle; the second grows into its buffers.
-        if cycles > 2 && began.elapsed() > duration / 10 {
-            samples.push(allocated(&app) as f64);
-            residents.push(resident() as f64);
-        }
-    }
-    // Each sample is taken in the same state; single ones still tremble with the allocator.
-    let part = samples.len().div_ceil(5);
-    let mean = |samples: &[f64]| samples.iter().sum::<f64>() / samples.len() as f64;
-    let ends = |samples: &[f64]| [&samples[..part], &samples[samples.len() - part..]].map(mean);
-    let [first, last] = ends(&samples);
-    println!("{cycles} cycles of {CYCLE} frames; after the first tenth and at the end, in MiB:");
-    for (name, [first, last]) in [("on the GPU", [first, last]), ("in all", ends(&residents))] {
-        println!("{name}: {:.1}, {:.1}", first / 1048576.0, last / 1048576.0);
-    }
-    assert!(
-        last < 1.01 * first,
-        "memory grows from {first} to {last} bytes"
-    );
-
-    for entity in cast.fluids.drain(..).chain(cast.second_camera) {
-        app.world_mut().despawn(entity);
-    }
-    app.world_mut()
-        .entity_mut(first_camera)
-        .remove::<FluidDebugView>();
-    let seen = last_frame(&mut app);
-    assert!(
-        seen == last_frame(&mut start(SIZES[0])),
-        "not as in a fresh app"
-    );
-}
-
-#[test]
-fn soak_for_half_a_minute() {
-    soak(Duration::from_secs(30));
-}
-
-#[test]
-#[ignore = "ten minutes"]
-fn soak_for_ten_minutes() {
-    soak(Duration::from_secs(600));
 }

@@ -1,0 +1,93 @@
+//! Named values of settings, as type data of the reflection registry.
+
+use bevy::{
+    prelude::*,
+    reflect::{FromType, PartialReflect, TypeRegistry},
+};
+
+use crate::{Bilateral, FluidMaterial, Medium, PlaneFit, Rain, ScreenSpaceFluid, SurfaceKernel};
+
+/// A setting with named values. Register [`ReflectPresets`] for it, and the inspector offers them:
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_fluid::inspector::{Presets, ReflectPresets};
+///
+/// #[derive(Component, Clone, Default, Reflect)]
+/// #[reflect(Component, Default, Presets)]
+/// struct Tap {
+///     open: bool,
+/// }
+///
+/// impl Presets for Tap {
+///     const PRESETS: &[(&str, Self)] = &[("CLOSED", Tap { open: false }), ("OPEN", Tap { open: true })];
+/// }
+/// ```
+pub trait Presets: Reflect + Clone {
+    /// Names and values. The names are those of the type's constants.
+    const PRESETS: &'static [(&'static str, Self)];
+}
+
+/// The [`Presets`] of a type in the registry.
+#[derive(Clone)]
+pub struct ReflectPresets {
+    values: fn() -> Vec<(&'static str, Box<dyn Reflect>)>,
+}
+
+impl<T: Presets> FromType<T> for ReflectPresets {
+    fn from_type() -> Self {
+        Self {
+            values: || {
+                T::PRESETS
+                    .iter()
+                    .map(|(name, value)| (*name, Box::new(value.clone()) as Box<dyn Reflect>))
+                    .collect()
+            },
+        }
+    }
+}
+
+impl ReflectPresets {
+    /// Names and values.
+    pub fn values(&self) -> Vec<(&'static str, Box<dyn Reflect>)> {
+        (self.values)()
+    }
+
+    /// The presets of a value's type; none where there are none.
+    pub fn of(value: &dyn PartialReflect, registry: &TypeRegistry) -> Option<Self> {
+        let id = value.get_represented_type_info()?.type_id();
+        registry.get_type_data::<Self>(id).cloned()
+    }
+
+    /// The name of the preset that `value` equals.
+    pub fn name_of(&self, value: &dyn PartialReflect) -> Option<&'static str> {
+        let equal = |preset: &dyn Reflect| value.reflect_partial_eq(preset.as_partial_reflect());
+        self.values()
+            .into_iter()
+            .find_map(|(name, preset)| (equal(&*preset) == Some(true)).then_some(name))
+    }
+}
+
+macro_rules! presets {
+    ($($type:ident: $($name:ident),+;)+) => {
+        $(impl Presets for $type {
+            const PRESETS: &'static [(&'static str, Self)] =
+                &[$((stringify!($name), Self::$name)),+];
+        })+
+
+        pub(super) fn plugin(app: &mut App) {
+            app$(.register_type_data::<$type, ReflectPresets>())+;
+        }
+    };
+}
+
+// In the order in which they are offered.
+presets! {
+    ScreenSpaceFluid: FAST, DEFAULT, ACCURATE, THESIS, EARLIER;
+    FluidMaterial: WATER, CLEAR_WATER, INK, MILK, HONEY, SMOKE, FIRE;
+    SurfaceKernel: DEFAULT, THESIS, EARLIER, PUFFS;
+    Medium: CLEAR;
+    PlaneFit: DEFAULT, THESIS;
+    Bilateral: DEFAULT, THESIS;
+    Rain: DRIZZLE, RAIN, HEAVY, CLOUDBURST;
+}

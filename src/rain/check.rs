@@ -1,0 +1,229 @@
+//! Rain that makes no sense: what is said, and what is drawn.
+
+use bevy::prelude::*;
+use thiserror::Error;
+
+use super::{
+    settings::{DEFAULT_EXPOSURE, Exposure, Rain, RainStreaks},
+    streaks::{LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
+};
+use crate::{
+    complaints::{AboutField, Complaints},
+    limits::Limited,
+};
+
+/// Why rain makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RainError {
+    /// A field is out of its range.
+    #[error("`{owner}::{field}` is {value}; it must be from {min} to {max}")]
+    Range {
+        /// `Rain` or `RainStreaks`.
+        owner: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// Smallest value allowed.
+        min: f32,
+        /// Largest value allowed.
+        max: f32,
+    },
+}
+
+impl RainError {
+    fn check(owner: &'static str, limited: &Limited) -> Result<(), Self> {
+        if limited.is_inside() {
+            return Ok(());
+        }
+        Err(Self::Range {
+            owner,
+            field: limited.name,
+            value: *limited.value,
+            min: limited.min,
+            max: limited.max,
+        })
+    }
+}
+
+impl AboutField for RainError {
+    fn field(&self) -> &'static str {
+        let Self::Range { field, .. } = self;
+        field
+    }
+}
+
+impl Rain {
+    fn fields(&mut self) -> [Limited<'_>; 6] {
+        let absent = Self::RAIN;
+        [
+            // No rain, rather than some.
+            Limited::new("rate", &mut self.rate, [0.0, 200.0], 0.0),
+            Limited::new(
+                "distance",
+                &mut self.distance,
+                [1.0, 100.0],
+                absent.distance,
+            ),
+            Limited::new("extent", &mut self.extent, [0.0, 1e5], absent.extent),
+            Limited::new("wind.x", &mut self.wind.x, [-30.0, 30.0], 0.0),
+            Limited::new("wind.y", &mut self.wind.y, [-30.0, 30.0], 0.0),
+            Limited::new(
+                "brightness",
+                &mut self.brightness,
+                [0.0, 100.0],
+                absent.brightness,
+            ),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), RainError> {
+        let mut rain = *self;
+        rain.fields()
+            .iter()
+            .try_for_each(|field| RainError::check("Rain", field))
+    }
+
+    /// The nearest settings that make sense: what is out of range is moved to its end; a rate that is
+    /// no number is none, anything else gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let mut clamped = *self;
+        clamped.fields().iter_mut().for_each(Limited::clamp);
+        clamped
+    }
+}
+
+fn limited_exposure(seconds: &mut f32) -> Limited<'_> {
+    Limited::new(
+        "exposure",
+        seconds,
+        [SHORTEST_EXPOSURE, LONGEST_EXPOSURE],
+        DEFAULT_EXPOSURE,
+    )
+}
+
+impl RainStreaks {
+    /// Checks the exposure time against its documented range.
+    ///
+    /// # Errors
+    /// If it is out of it, by value.
+    pub fn validate(&self) -> Result<(), RainError> {
+        match self.exposure {
+            Exposure::FrameTime => Ok(()),
+            Exposure::Seconds(mut seconds) => {
+                RainError::check("RainStreaks", &limited_exposure(&mut seconds))
+            }
+        }
+    }
+}
+
+/// The exposure time nearest to `seconds` that makes sense.
+pub(crate) fn clamped_exposure(mut seconds: f32) -> f32 {
+    limited_exposure(&mut seconds).clamp();
+    seconds
+}
+
+pub(crate) fn check_rain(
+    changed: Query<(Entity, &Rain), Changed<Rain>>,
+    streaks: Res<RainStreaks>,
+    mut gone: RemovedComponents<Rain>,
+    mut complaints: Local<Complaints>,
+) {
+    for entity in gone.read() {
+        complaints.forget(entity);
+    }
+    for (entity, rain) in &changed {
+        if let Some(error) = complaints.of(entity, rain.validate()) {
+            warn!("camera {entity}: {error}; the nearest value in range is taken");
+        }
+    }
+    if streaks.is_changed()
+        && let Some(error) = complaints.of(Entity::PLACEHOLDER, streaks.validate())
+    {
+        warn!("{error}; the nearest value in range is taken");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_make_sense() {
+        for (rain, rate) in [
+            (Rain::DRIZZLE, 1.0),
+            (Rain::RAIN, 5.0),
+            (Rain::HEAVY, 20.0),
+            (Rain::CLOUDBURST, 75.0),
+        ] {
+            assert_eq!(rain.validate(), Ok(()));
+            assert_eq!(rain.clamped(), rain);
+            assert_eq!(rain.rate, rate);
+        }
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_named_and_clamped() {
+        for (rate, expected) in [
+            (-1.0, 0.0),
+            (f32::NAN, 0.0),
+            (1e6, 200.0),
+            (f32::INFINITY, 200.0),
+        ] {
+            let rain = Rain::falling(rate);
+            assert_eq!(rain.validate().unwrap_err().field(), "rate");
+            assert_eq!(rain.clamped(), Rain::falling(expected));
+        }
+        let mut odd = Rain {
+            distance: f32::NEG_INFINITY,
+            extent: f32::NAN,
+            wind: vec2(f32::NAN, 1e9),
+            brightness: -3.0,
+            ..Rain::RAIN
+        };
+        let clamped = odd.clamped();
+        assert_eq!((clamped.distance, clamped.extent), (1.0, 500.0));
+        assert_eq!(clamped.wind, vec2(0.0, 30.0));
+        assert_eq!(clamped.brightness, 0.0);
+        // One after the other is named, until none is left.
+        let mut named = Vec::new();
+        while let Err(error) = odd.validate() {
+            let name = error.field();
+            named.push(name);
+            odd.fields()
+                .iter_mut()
+                .filter(|field| field.name == name)
+                .for_each(Limited::clamp);
+        }
+        assert_eq!(
+            named,
+            ["distance", "extent", "wind.x", "wind.y", "brightness"]
+        );
+        assert_eq!(
+            Rain::falling(1e6).validate().unwrap_err().to_string(),
+            "`Rain::rate` is 1000000; it must be from 0 to 200"
+        );
+    }
+
+    #[test]
+    fn exposures_are_named_and_clamped() {
+        for (seconds, expected) in [
+            (9.0, LONGEST_EXPOSURE),
+            (-1.0, SHORTEST_EXPOSURE),
+            (f32::NAN, DEFAULT_EXPOSURE),
+        ] {
+            let streaks = RainStreaks {
+                exposure: Exposure::Seconds(seconds),
+                ..default()
+            };
+            assert_eq!(streaks.validate().unwrap_err().field(), "exposure");
+            assert_eq!(clamped_exposure(seconds), expected);
+        }
+        assert_eq!(RainStreaks::default().validate(), Ok(()));
+    }
+}

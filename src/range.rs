@@ -1,0 +1,96 @@
+//! Where a setting's values lie, for whatever edits settings.
+
+use bevy::reflect::{NamedField, Reflect, UnnamedField};
+
+/// Between which values a setting makes sense, and in which unit: an attribute of reflected fields,
+/// which editors such as the inspector read. It enforces nothing.
+///
+/// ```
+/// use bevy::reflect::{Reflect, TypeInfo, Typed};
+/// use bevy_fluid::SettingRange;
+///
+/// #[derive(Reflect)]
+/// struct Pipe {
+///     /// How wide it is. Unit: m, range 0.01..=2.
+///     #[reflect(@SettingRange::new(0.01, 2.0).unit("m").logarithmic())]
+///     width: f32,
+/// }
+///
+/// let TypeInfo::Struct(pipe) = Pipe::type_info() else { unreachable!() };
+/// let range = pipe.field("width").and_then(SettingRange::of).unwrap();
+/// assert_eq!((range.max, range.unit), (2.0, "m"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+pub struct SettingRange {
+    /// The least value.
+    pub min: f64,
+    /// The greatest value.
+    pub max: f64,
+    /// What is counted, as it stands behind a number; empty for pure numbers.
+    pub unit: &'static str,
+    /// Whether values span orders of magnitude.
+    pub logarithmic: bool,
+    /// Whether values beyond `max` make sense too, rare as they are.
+    pub open: bool,
+    /// What the field of an enum's variant is when the variant is chosen; the nearest to 1 where
+    /// this is not a number.
+    pub start: f64,
+}
+
+impl SettingRange {
+    /// From `min` to `max`, linear and without a unit.
+    pub const fn new(min: f64, max: f64) -> Self {
+        Self {
+            min,
+            max,
+            unit: "",
+            logarithmic: false,
+            open: false,
+            start: f64::NAN,
+        }
+    }
+
+    /// With a unit.
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Over orders of magnitude.
+    pub const fn logarithmic(self) -> Self {
+        Self {
+            logarithmic: true,
+            ..self
+        }
+    }
+
+    /// Larger values are possible too.
+    pub const fn open(self) -> Self {
+        Self { open: true, ..self }
+    }
+
+    /// With a value to begin with.
+    pub const fn start(self, start: f64) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The range of a struct's field, if it has one.
+    pub fn of(field: &NamedField) -> Option<&Self> {
+        field.get_attribute()
+    }
+
+    /// The range of a tuple's field, if it has one.
+    pub fn of_unnamed(field: &UnnamedField) -> Option<&Self> {
+        field.get_attribute()
+    }
+
+    /// What a value is to begin with.
+    pub fn first(&self) -> f64 {
+        let start = if self.start.is_nan() { 1.0 } else { self.start };
+        start.clamp(self.min, self.max)
+    }
+
+    /// The greatest value that may be typed.
+    pub fn limit(&self) -> f64 {
+        if self.open { f64::INFINITY } else { self.max }
+    }
+}

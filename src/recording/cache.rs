@@ -1,0 +1,199 @@
+//! The frames that a player holds: loaded in the background, never more than it may.
+
+use bevy::{
+    asset::AssetServer,
+    prelude::*,
+    tasks::{IoTaskPool, Task, futures::check_ready},
+};
+
+use super::{
+    asset::{FluidRecording, RecordedFrame},
+    files,
+    frame::{FrameError, ParticleFrame},
+    interpolate::in_order_of_ids,
+    playhead::Playhead,
+};
+
+/// The frames that a [`RecordingPlayer`](super::RecordingPlayer) has loaded, and what it shows of
+/// them.
+#[derive(Component, Debug, Default)]
+pub struct LoadedFrames {
+    recording: AssetId<FluidRecording>,
+    /// Of the whole recording; to see that it is another now.
+    frame_count: usize,
+    slots: Vec<Slot>,
+    /// Those that have not turned out to be damaged, by number.
+    pub(super) playable: Vec<usize>,
+    /// What should be held, the most urgent first.
+    window: Vec<usize>,
+    /// What is on screen.
+    pub(super) shown: Option<Shown>,
+    pub(super) shown_radius: Option<f32>,
+    pub(super) shown_number: Option<u32>,
+    /// Since the last seek nothing of what was asked for has been shown.
+    pub(super) is_seeking: bool,
+    pub(super) is_waiting: bool,
+    /// The player's time as we left it: another one is a seek.
+    pub(super) left_at: Option<f64>,
+}
+
+/// A moment between two frames of a recording, or one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shown {
+    pub(super) before: usize,
+    pub(super) after: usize,
+    pub(super) share: f32,
+}
+
+#[derive(Debug)]
+struct Slot {
+    frame: usize,
+    content: Content,
+}
+
+#[derive(Debug)]
+enum Content {
+    Loading(Task<Result<ParticleFrame, FrameError>>),
+    Ready(ParticleFrame),
+}
+
+impl Slot {
+    fn is_ready(&self) -> bool {
+        matches!(self.content, Content::Ready(_))
+    }
+}
+
+impl LoadedFrames {
+    /// How many frames are in memory or on their way there.
+    pub fn held(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// How many frames are on their way.
+    pub fn loading(&self) -> usize {
+        self.slots.iter().filter(|slot| !slot.is_ready()).count()
+    }
+
+    /// The number of the frame that is shown, or of the one before the moment that is.
+    pub fn shown(&self) -> Option<u32> {
+        self.shown_number
+    }
+
+    /// Whether what the player's time asks for is not there yet.
+    pub fn is_waiting(&self) -> bool {
+        self.is_waiting
+    }
+
+    /// How many frames have turned out to be damaged or missing.
+    pub fn skipped(&self) -> usize {
+        self.frame_count - self.playable.len()
+    }
+
+    /// Forgets everything if the recording is another.
+    pub(super) fn follow(&mut self, id: AssetId<FluidRecording>, recording: &FluidRecording) {
+        let frame_count = recording.frames.len();
+        if self.recording != id || self.frame_count != frame_count {
+            *self = Self {
+                recording: id,
+                frame_count,
+                playable: (0..frame_count).collect(),
+                is_seeking: true,
+                is_waiting: true,
+                ..default()
+            };
+        }
+    }
+
+    /// Takes in what has been loaded.
+    pub(super) fn collect(&mut self, entity: Entity) {
+        let mut at = 0;
+        while let Some(slot) = self.slots.get_mut(at) {
+            let Content::Loading(task) = &mut slot.content else {
+                at += 1;
+                continue;
+            };
+            match check_ready(task) {
+                None => at += 1,
+                Some(Ok(frame)) => {
+                    slot.content = Content::Ready(frame);
+                    at += 1;
+                }
+                Some(Err(error)) => {
+                    let frame = self.slots.swap_remove(at).frame;
+                    self.playable.retain(|&playable| playable != frame);
+                    warn!("fluid {entity} skips a frame of its recording: {error}");
+                    if self.playable.is_empty() {
+                        warn!("fluid {entity} has no frame of its recording left to play");
+                        self.is_waiting = false;
+                    }
+                }
+            }
+        }
+    }
+
+    pub(super) fn ready(&self, frame: usize) -> Option<&ParticleFrame> {
+        self.slots.iter().find_map(|slot| match &slot.content {
+            Content::Ready(content) if slot.frame == frame => Some(content),
+            _ => None,
+        })
+    }
+
+    /// The frames that are there.
+    pub(super) fn all_ready(&self) -> impl Iterator<Item = usize> {
+        let ready = self.slots.iter().filter(|slot| slot.is_ready());
+        ready.map(|slot| slot.frame)
+    }
+
+    /// Has the frames loaded that come next, and drops others for them.
+    pub(super) fn load(
+        &mut self,
+        head: &Playhead,
+        recording: &FluidRecording,
+        server: &AssetServer,
+        cache: usize,
+    ) {
+        self.window.clear();
+        let next = head.upcoming(self.playable.len()).take(cache);
+        self.window.extend(next.map(|place| self.playable[place]));
+        let window = &self.window;
+        if self.is_seeking {
+            // What is on its way to where nobody looks any more.
+            self.slots
+                .retain(|slot| slot.is_ready() || window.contains(&slot.frame));
+        }
+        while self.slots.len() > cache {
+            let other = self
+                .slots
+                .iter()
+                .position(|slot| !window.contains(&slot.frame));
+            self.slots.swap_remove(other.unwrap_or(0));
+        }
+        for &frame in window {
+            if self.slots.iter().any(|slot| slot.frame == frame) {
+                continue;
+            }
+            if self.slots.len() == cache {
+                // One that is still loading is shown late rather than never: else play that is
+                // faster than its files would show none at all.
+                let passed = |slot: &Slot| slot.is_ready() && !window.contains(&slot.frame);
+                let Some(passed) = self.slots.iter().position(passed) else {
+                    break;
+                };
+                self.slots.swap_remove(passed);
+            }
+            let task = load(server.clone(), recording.frames[frame].clone());
+            self.slots.push(Slot {
+                frame,
+                content: Content::Loading(IoTaskPool::get().spawn(task)),
+            });
+        }
+    }
+}
+
+async fn load(server: AssetServer, frame: RecordedFrame) -> Result<ParticleFrame, FrameError> {
+    let name = frame.path.to_string();
+    match files::read(&server, &frame.path).await {
+        Ok(bytes) => ParticleFrame::parse(&name, &bytes).map(in_order_of_ids),
+        Err(reason) => Err(FrameError::Read { name, reason }),
+    }
+}

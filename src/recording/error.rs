@@ -1,0 +1,70 @@
+//! Why there is no recording.
+
+use thiserror::Error;
+
+use super::frame::FrameError;
+
+/// Why a recording cannot be found or played; the culprit is named.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// The pattern of the frames' names makes no sense.
+    #[error("`{pattern}` is no pattern of frames: {reason}")]
+    Pattern {
+        /// The pattern.
+        pattern: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// The frames' own files are at fault.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The frame rate is not a positive number, or the radius.
+    #[error("recording `{pattern}`: its {field} is {value}; it must be a positive number")]
+    Value {
+        /// The pattern.
+        pattern: String,
+        /// `rate` or `radius`.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The folder cannot be listed.
+    #[error(
+        "cannot list {folder} for `{pattern}`: {reason} (`first` and `last` spare the listing)"
+    )]
+    Folder {
+        /// The folder.
+        folder: String,
+        /// The pattern.
+        pattern: String,
+        /// Why.
+        reason: String,
+    },
+    /// No file fits, or the first number is above the last.
+    #[error("there are no frames `{pattern}` from {first} to {last}")]
+    NoFrames {
+        /// The pattern.
+        pattern: String,
+        /// The first number asked for.
+        first: u32,
+        /// The last number asked for.
+        last: u32,
+    },
+    /// More frames are asked for than recordings have.
+    #[error("`{pattern}` asks for more than {most} frames")]
+    TooManyFrames {
+        /// The pattern.
+        pattern: String,
+        /// The most that there may be.
+        most: u32,
+    },
+    /// The `.fluid.ron` file cannot be read.
+    #[error("{name} is no description of a recording: {reason}")]
+    Description {
+        /// The file.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,89 @@
+//! Particle files: read, played and written. Feature `recordings`.
+//!
+//! - [`ParticleFrame`] is the content of one file, `.vtk`, `.bgeo`, `.ply` or `.xyz`, and an asset.
+//! - [`FluidRecording`] is a numbered sequence of them, found by a pattern
+//!   (`FluidRecording::load(&asset_server, "frames/dam_####.vtk")`) or described by a `.fluid.ron`
+//!   (`asset_server.load("frames/dam.fluid.ron")`).
+//! - [`RecordingPlayer`] on a fluid plays one: its frames are loaded in the background, and only as
+//!   many as its cache may hold.
+//! - [`RecordingWriter`] on a fluid makes one.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_fluid::{prelude::*, recording::{FluidRecording, RecordingPlayer, RecordingWriter}};
+//!
+//! fn play(mut commands: Commands, assets: Res<AssetServer>) {
+//!     let recording = FluidRecording::load(&assets, "frames/dam_####.vtk");
+//!     commands.spawn((RecordingPlayer::new(recording).repeating(), FluidMaterial::WATER));
+//! }
+//!
+//! fn record(mut commands: Commands, fluid: Single<Entity, With<FluidParticles>>) {
+//!     commands.entity(*fluid).insert(RecordingWriter::new("frames/dam_####.vtk"));
+//! }
+//! ```
+//!
+//! A player reads assets, a writer writes to the file system: patterns of the one are asset paths,
+//! those of the other are the system's; absolute paths are the same for both.
+
+mod asset;
+mod cache;
+mod error;
+mod files;
+mod format;
+mod frame;
+mod interpolate;
+mod loader;
+mod pattern;
+mod playback;
+mod player;
+mod playhead;
+mod quietly;
+mod writer;
+
+use bevy::prelude::*;
+
+pub use self::{
+    asset::{FluidRecording, RecordingSettings},
+    cache::LoadedFrames,
+    error::RecordingError,
+    format::ParticleFormat,
+    frame::{FrameError, ParticleFrame},
+    loader::{FluidRecordingLoader, ParticleFrameLoader},
+    pattern::FramePattern,
+    player::{Interpolation, PlayerError, RecordingPlayer},
+    writer::{ParticleAttributes, RecordingWriter, WrittenFrames},
+};
+use crate::schedule::FluidSystems;
+
+/// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; without that plugin,
+/// as in a program that records and draws nothing, it does its work alone. It needs Bevy's
+/// `AssetPlugin` and `Time`.
+///
+/// Players play in [`FluidSystems::Simulate`]; what is written is what is then there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RecordingPlugin;
+
+impl Plugin for RecordingPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_asset::<ParticleFrame>()
+            .init_asset::<FluidRecording>()
+            .register_asset_reflect::<ParticleFrame>()
+            .init_asset_loader::<ParticleFrameLoader>()
+            .init_asset_loader::<FluidRecordingLoader>()
+            .register_type::<RecordingPlayer>()
+            .register_type::<RecordingSettings>()
+            .register_type::<RecordingWriter>()
+            .register_type::<ParticleAttributes>()
+            .add_systems(
+                PostUpdate,
+                (
+                    (player::check_players, playback::play)
+                        .chain()
+                        .in_set(FluidSystems::Simulate),
+                    writer::record
+                        .after(FluidSystems::Simulate)
+                        .before(FluidSystems::Shape),
+                ),
+            );
+    }
+}

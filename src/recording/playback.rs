@@ -1,0 +1,172 @@
+//! Plays: moves the clock on, shows what is there, has the rest loaded.
+
+use bevy::{asset::AssetServer, prelude::*};
+
+use super::{
+    asset::FluidRecording,
+    cache::{LoadedFrames, Shown},
+    interpolate::Between,
+    player::{Interpolation, RecordingPlayer},
+    playhead::{Playhead, moved_on},
+};
+use crate::particles::FluidParticles;
+
+pub(super) fn play(
+    mut players: Query<(
+        Entity,
+        &mut RecordingPlayer,
+        &mut LoadedFrames,
+        &mut FluidParticles,
+    )>,
+    recordings: Res<Assets<FluidRecording>>,
+    server: Res<AssetServer>,
+    time: Res<Time>,
+) {
+    for (entity, mut player, mut frames, mut particles) in &mut players {
+        let Some(recording) = recordings.get(&player.recording) else {
+            continue;
+        };
+        let frames = &mut *frames;
+        frames.follow(player.recording.id(), recording);
+        frames.collect(entity);
+        if frames.playable.is_empty() {
+            continue;
+        }
+        let now = moved(&player, frames, recording, time.delta_secs_f64());
+        if player.time != now {
+            player.time = now;
+        }
+        let rate = player.clamped_rate();
+        let head = Playhead::at(now, recording, &frames.playable, rate >= 0.0, player.repeat);
+        if let Some(moment) = choose(frames, &head, player.interpolation) {
+            show(
+                moment,
+                frames,
+                recording,
+                player.interpolation,
+                &mut particles,
+            );
+        }
+        let radius = frames.shown_radius.or(player.radius).or(recording.radius);
+        if let Some(radius) = radius.filter(|&radius| radius != particles.radius)
+            && frames.shown.is_some()
+        {
+            particles.radius = radius;
+        }
+        frames.load(&head, recording, &server, player.clamped_cache());
+    }
+}
+
+/// The player's time now, in range.
+fn moved(
+    player: &RecordingPlayer,
+    frames: &mut LoadedFrames,
+    recording: &FluidRecording,
+    delta: f64,
+) -> f64 {
+    let time = player.clamped_time();
+    let is_sought = frames.left_at.is_some_and(|left_at| left_at != player.time);
+    frames.is_seeking |= is_sought;
+    // What is sought is shown before it moves on, and so is the start.
+    let stands = is_sought || player.paused || frames.shown.is_none();
+    let seconds = if stands {
+        0.0
+    } else {
+        delta * player.clamped_rate()
+    };
+    let now = moved_on(time, seconds, recording, player.repeat);
+    frames.left_at = Some(now);
+    now
+}
+
+/// What to show: the moment itself if it is there, else the latest frame that has been passed.
+fn choose(
+    frames: &mut LoadedFrames,
+    head: &Playhead,
+    interpolation: Interpolation,
+) -> Option<Shown> {
+    let [before, after] = [head.before, head.after].map(|place| frames.playable[place]);
+    let one = |frame| Shown {
+        before: frame,
+        after: frame,
+        share: 0.0,
+    };
+    let mut target = head.before;
+    frames.is_waiting = frames.ready(before).is_none();
+    if interpolation != Interpolation::None {
+        let ends = (frames.ready(before), frames.ready(after));
+        if let (Some(from), Some(to)) = ends
+            && head.share > 0.0
+            && !(from.ids.is_empty() && to.ids.is_empty())
+            && [from, to]
+                .into_iter()
+                .all(|end| end.ids.len() == end.positions.len())
+        {
+            frames.is_seeking = false;
+            return Some(Shown {
+                before,
+                after,
+                share: head.share,
+            });
+        }
+        frames.is_waiting = ends.0.is_none() || ends.1.is_none();
+        if head.share >= 0.5 {
+            target = head.after;
+        }
+    }
+    if frames.ready(frames.playable[target]).is_some() {
+        frames.is_seeking = false;
+        return Some(one(frames.playable[target]));
+    }
+    if frames.is_seeking {
+        return None;
+    }
+    let count = frames.playable.len();
+    let lag = |frame: usize| {
+        let place = frames.playable.binary_search(&frame).ok()?;
+        head.lag(place, target, count)
+    };
+    let shown = lag(frames.shown?.before)?;
+    let late = frames
+        .all_ready()
+        .filter_map(|frame| Some((lag(frame)?, frame)));
+    let (least, frame) = late.min()?;
+    (least < shown).then(|| one(frame))
+}
+
+/// Writes the particles, unless they are there already.
+fn show(
+    moment: Shown,
+    frames: &mut LoadedFrames,
+    recording: &FluidRecording,
+    interpolation: Interpolation,
+    particles: &mut Mut<FluidParticles>,
+) {
+    if frames.shown == Some(moment) {
+        return;
+    }
+    let (Some(before), Some(after)) = (frames.ready(moment.before), frames.ready(moment.after))
+    else {
+        return;
+    };
+    let positions = &mut particles.positions;
+    if moment.before == moment.after {
+        positions.clear();
+        positions.extend_from_slice(&before.positions);
+    } else {
+        let number = |frame: usize| f64::from(recording.frames[frame].number);
+        let frames = number(moment.after) - number(moment.before);
+        Between {
+            before,
+            after,
+            share: moment.share,
+            seconds: (frames / recording.rate) as f32,
+            by_velocity: interpolation == Interpolation::Velocity,
+        }
+        .write_positions(positions);
+    }
+    let radius = before.radius.or(after.radius);
+    frames.shown_radius = radius;
+    frames.shown_number = Some(recording.frames[moment.before].number);
+    frames.shown = Some(moment);
+}

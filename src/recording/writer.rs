@@ -1,0 +1,323 @@
+//! Records a running app: one numbered file for each frame, written in the background.
+
+use std::{
+    fs, mem,
+    path::{Path, PathBuf},
+};
+
+use bevy::{
+    prelude::*,
+    tasks::{IoTaskPool, Task, block_on, futures::check_ready},
+};
+
+use super::{
+    asset::RecordingSettings,
+    error::RecordingError,
+    frame::{FrameError, ParticleFrame, replace},
+    pattern::FramePattern,
+};
+use crate::particles::FluidParticles;
+
+/// Frames of the clock may be a little short.
+const TOLERANCE: f64 = 1e-3;
+const MAX_RATE: f32 = 10_000.0;
+
+/// Writes the [`FluidParticles`] beside it to numbered files, in the format of their extension, with
+/// the [`ParticleAttributes`] if there are some, and a `.fluid.ron` that says how to play them.
+///
+/// Frame n is the state in the first frame of the app at or after n / `rate`, from the frame on in
+/// which the component is there. Everything is written in the background; where files are slower
+/// than the app, frames are left out (and counted) rather than waited for: numbers keep their time.
+/// What cannot be written is said once, with its path, and ends the recording until the component
+/// changes. [`WrittenFrames`] has the counts.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[require(FluidParticles, WrittenFrames)]
+pub struct RecordingWriter {
+    /// Names of the files, see [`FramePattern`]: a path of the file system with one number. Missing
+    /// folders are made, and files that are there are replaced. Another pattern starts anew.
+    pub frames: String,
+    /// Frames per second of the app's [`Time`]. Range > 0..=10,000, default 30.
+    pub rate: f32,
+    /// Whether nothing is written and the recording's clock stands still. Default: false.
+    pub paused: bool,
+    /// The most frames that wait to be written. Range ≥ 1, default 4. Higher: slow spells of the
+    /// disk lose no frames, for the memory of as many.
+    pub queue: usize,
+}
+
+impl Default for RecordingWriter {
+    fn default() -> Self {
+        Self {
+            frames: "recording/frame_####.vtk".into(),
+            rate: 30.0,
+            paused: false,
+            queue: 4,
+        }
+    }
+}
+
+impl RecordingWriter {
+    /// Writes 30 frames a second to files of this name.
+    pub fn new(frames: impl Into<String>) -> Self {
+        Self {
+            frames: frames.into(),
+            ..default()
+        }
+    }
+}
+
+/// What else is known of the particles of the fluid beside it, for a [`RecordingWriter`]: whoever
+/// moves the particles keeps it up to date.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ParticleAttributes {
+    /// Who is who from frame to frame, so that players can interpolate: one for each particle, or
+    /// none at all.
+    pub ids: Vec<u32>,
+    /// One for each particle, or none at all. Unit: m/s.
+    pub velocities: Vec<Vec3>,
+}
+
+/// What a [`RecordingWriter`] has written.
+#[derive(Component, Debug, Default)]
+pub struct WrittenFrames {
+    pattern: String,
+    /// Recorded time. Unit: s.
+    elapsed: f64,
+    last: Option<u32>,
+    jobs: Vec<Task<(Job, Result<(), FrameError>)>>,
+    /// Their buffers are used again.
+    spare: Vec<Job>,
+    written: u32,
+    dropped: u32,
+    error: Option<String>,
+}
+
+/// One file to be written.
+#[derive(Debug, Default)]
+struct Job {
+    frame: ParticleFrame,
+    path: PathBuf,
+    /// A second file, with the first frame.
+    description: Option<(PathBuf, String)>,
+    bytes: Vec<u8>,
+}
+
+impl Job {
+    fn run(&mut self) -> Result<(), FrameError> {
+        let failed = |path: &Path| {
+            let name = path.display().to_string();
+            move |error: std::io::Error| FrameError::Write {
+                name,
+                reason: error.to_string(),
+            }
+        };
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder).map_err(failed(folder))?;
+        }
+        self.frame.write_with(&self.path, &mut self.bytes)?;
+        if let Some((path, text)) = self.description.take() {
+            replace(&path, text.as_bytes()).map_err(failed(&path))?;
+        }
+        Ok(())
+    }
+}
+
+impl WrittenFrames {
+    /// How many frames have been written.
+    pub fn written(&self) -> u32 {
+        self.written
+    }
+
+    /// How many frames have been left out because too many waited.
+    pub fn dropped(&self) -> u32 {
+        self.dropped
+    }
+
+    /// How many frames wait to be written.
+    pub fn waiting(&self) -> usize {
+        self.jobs.len()
+    }
+
+    /// Why the recording has ended, if it has.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Waits until everything is written: for the end of a program, which would end the writing
+    /// too.
+    pub fn finish(&mut self) {
+        for task in mem::take(&mut self.jobs) {
+            let (job, result) = block_on(task);
+            self.take_back(job, result);
+        }
+    }
+
+    fn collect(&mut self) {
+        let mut at = 0;
+        while let Some(task) = self.jobs.get_mut(at) {
+            if let Some((job, result)) = check_ready(task) {
+                drop(self.jobs.swap_remove(at));
+                self.take_back(job, result);
+            } else {
+                at += 1;
+            }
+        }
+    }
+
+    fn take_back(&mut self, job: Job, result: Result<(), FrameError>) {
+        self.spare.push(job);
+        match result {
+            Ok(()) => self.written += 1,
+            Err(error) => self.fail(&error.to_string()),
+        }
+    }
+
+    fn fail(&mut self, error: &str) {
+        if self.error.is_none() {
+            warn!("the recording ends: {error}");
+            self.error = Some(error.into());
+        }
+    }
+
+    fn restart(&mut self, pattern: &str) {
+        self.pattern = pattern.into();
+        self.elapsed = 0.0;
+        self.last = None;
+        (self.written, self.dropped) = (0, 0);
+    }
+}
+
+impl Drop for WrittenFrames {
+    fn drop(&mut self) {
+        // What waits is still written where the fluid is despawned.
+        for task in self.jobs.drain(..) {
+            task.detach();
+        }
+    }
+}
+
+pub(super) fn record(
+    mut writers: Query<(
+        Ref<RecordingWriter>,
+        &mut WrittenFrames,
+        &FluidParticles,
+        Option<&ParticleAttributes>,
+    )>,
+    time: Res<Time>,
+) {
+    for (writer, mut written, particles, attributes) in &mut writers {
+        let written = &mut *written;
+        written.collect();
+        if writer.is_changed() {
+            written.error = None;
+            if written.pattern != writer.frames {
+                written.restart(&writer.frames);
+            }
+        }
+        if writer.paused || written.error.is_some() {
+            continue;
+        }
+        if written.last.is_some() {
+            written.elapsed += time.delta_secs_f64();
+        }
+        let result = frame_due(&writer, written).and_then(|due| {
+            let Some((number, pattern)) = due else {
+                return Ok(());
+            };
+            if written.jobs.len() >= writer.queue.max(1) {
+                if written.dropped == 0 {
+                    let frames = &writer.frames;
+                    warn!("{frames} is written too slowly: frames are left out");
+                }
+                written.dropped += 1;
+                return Ok(());
+            }
+            start(number, &pattern, &writer, written, particles, attributes)
+        });
+        if let Err(error) = result {
+            written.fail(&error.to_string());
+        }
+    }
+}
+
+/// The number of the frame whose time has come, if it has.
+fn frame_due(
+    writer: &RecordingWriter,
+    written: &mut WrittenFrames,
+) -> Result<Option<(u32, FramePattern)>, RecordingError> {
+    let refuse = |reason| RecordingError::Pattern {
+        pattern: writer.frames.clone(),
+        reason,
+    };
+    if !(writer.rate > 0.0 && writer.rate <= MAX_RATE) {
+        return Err(RecordingError::Value {
+            pattern: writer.frames.clone(),
+            field: "rate",
+            value: writer.rate.into(),
+        });
+    }
+    let number = (written.elapsed * f64::from(writer.rate) + TOLERANCE) as u32;
+    if written.last.is_some_and(|last| number <= last) {
+        return Ok(None);
+    }
+    written.last = Some(number);
+    let pattern = FramePattern::parse(&writer.frames)?;
+    if !pattern.is_numbered() {
+        return Err(refuse("there is no number in it (`####`)"));
+    }
+    Ok(Some((number, pattern)))
+}
+
+fn start(
+    number: u32,
+    pattern: &FramePattern,
+    writer: &RecordingWriter,
+    written: &mut WrittenFrames,
+    particles: &FluidParticles,
+    attributes: Option<&ParticleAttributes>,
+) -> Result<(), RecordingError> {
+    let mut job = written.spare.pop().unwrap_or_default();
+    let frame = &mut job.frame;
+    frame.positions.clone_from(&particles.positions);
+    frame.radius = Some(particles.radius).filter(|&radius| super::frame::is_radius(radius));
+    frame.ids.clear();
+    frame.velocities.clear();
+    if let Some(attributes) = attributes {
+        frame.ids.extend_from_slice(&attributes.ids);
+        frame.velocities.extend_from_slice(&attributes.velocities);
+    }
+    let folder = Path::new(pattern.folder());
+    job.path = folder.join(pattern.file_name(number));
+    job.description = (number == 0)
+        .then(|| description(pattern, writer, frame.radius))
+        .transpose()?
+        .map(|text| (folder.join(format!("{}.fluid.ron", pattern.stem())), text));
+    written.jobs.push(IoTaskPool::get().spawn(async move {
+        let result = job.run();
+        (job, result)
+    }));
+    Ok(())
+}
+
+/// What the `.fluid.ron` beside the frames holds.
+fn description(
+    pattern: &FramePattern,
+    writer: &RecordingWriter,
+    radius: Option<f32>,
+) -> Result<String, RecordingError> {
+    let frames = pattern.to_string();
+    let settings = RecordingSettings {
+        frames: frames[pattern.folder().len()..].into(),
+        rate: writer.rate.into(),
+        radius,
+        ..default()
+    };
+    ron::ser::to_string_pretty(&settings, default())
+        .map(|text| text + "\n")
+        .map_err(|error| RecordingError::Description {
+            name: frames,
+            reason: error.to_string(),
+        })
+}
