@@ -122,7 +122,7 @@ impl Walker<'_> {
             .push_id(field.name, |ui| {
                 row(ui, field, equal == Some(false), |ui, label| {
                     leaf(ui, label, value, field.range)
-                        .unwrap_or_else(|| self.choice(ui, label, value))
+                        .unwrap_or_else(|| self.choice(ui, label, value, field.range))
                 })
             })
             .inner;
@@ -145,9 +145,19 @@ impl Walker<'_> {
     }
 
     /// What stands in the row of a value with parts: a list of its variants or presets.
-    fn choice(&self, ui: &mut Ui, label: Id, value: &mut dyn PartialReflect) -> bool {
+    fn choice(
+        &self,
+        ui: &mut Ui,
+        label: Id,
+        value: &mut dyn PartialReflect,
+        range: Option<&SettingRange>,
+    ) -> bool {
         match value.reflect_ref() {
-            ReflectRef::Enum(_) => self.variants(ui, label, value),
+            _ if is_handle(value) => {
+                ui.label(RichText::new("an asset").weak());
+                false
+            }
+            ReflectRef::Enum(_) => self.variants(ui, label, value, range),
             ReflectRef::Struct(_) | ReflectRef::TupleStruct(_) => {
                 self.presets(ui, label, value, VALUE)
             }
@@ -190,7 +200,13 @@ impl Walker<'_> {
         edited
     }
 
-    fn variants(&self, ui: &mut Ui, label: Id, value: &mut dyn PartialReflect) -> bool {
+    fn variants(
+        &self,
+        ui: &mut Ui,
+        label: Id,
+        value: &mut dyn PartialReflect,
+        range: Option<&SettingRange>,
+    ) -> bool {
         let Some(TypeInfo::Enum(info)) = value.get_represented_type_info() else {
             return false;
         };
@@ -215,7 +231,7 @@ impl Walker<'_> {
         let Some(next) = next else {
             return false;
         };
-        let Some(parts) = self.new_variant(next) else {
+        let Some(parts) = self.new_variant(next, range) else {
             return false;
         };
         value
@@ -259,7 +275,7 @@ impl Walker<'_> {
                         continue;
                     };
                     let docs = part.docs().or(info.docs());
-                    let range = SettingRange::of_unnamed(part);
+                    let range = SettingRange::of_unnamed(part).or(field.range);
                     (info.name(), docs, range, part.type_id())
                 }
                 _ => continue,
@@ -287,14 +303,20 @@ impl Walker<'_> {
         edited
     }
 
-    /// What a variant holds when it is chosen; `None` where some part has no first value.
-    fn new_variant(&self, variant: &VariantInfo) -> Option<DynamicVariant> {
+    /// What a variant holds when it is chosen; `None` where some part has no first value. `range`
+    /// is that of an option's field, and holds for what is in the option.
+    fn new_variant(
+        &self,
+        variant: &VariantInfo,
+        range: Option<&SettingRange>,
+    ) -> Option<DynamicVariant> {
         Some(match variant {
             VariantInfo::Unit(_) => DynamicVariant::Unit,
             VariantInfo::Tuple(info) => {
                 let mut parts = DynamicTuple::default();
                 for part in info.iter() {
-                    parts.insert_boxed(self.first(part.type_id(), SettingRange::of_unnamed(part))?);
+                    let range = SettingRange::of_unnamed(part).or(range);
+                    parts.insert_boxed(self.first(part.type_id(), range)?);
                 }
                 DynamicVariant::Tuple(parts)
             }
@@ -335,5 +357,15 @@ fn has_widget(value: &dyn PartialReflect) -> bool {
         TypeId::of::<Vec3>(),
         TypeId::of::<Vec4>(),
     ];
-    id.is_some_and(|id| wholes.contains(&id))
+    id.is_some_and(|id| wholes.contains(&id)) || is_handle(value)
+}
+
+/// Whether a value stands for an asset: its variants are nobody's choice.
+fn is_handle(value: &dyn PartialReflect) -> bool {
+    let paths = value
+        .get_represented_type_info()
+        .map(TypeInfo::type_path_table);
+    paths.is_some_and(|paths| {
+        paths.crate_name() == Some("bevy_asset") && paths.ident() == Some("Handle")
+    })
 }

@@ -61,14 +61,15 @@
 //! - Threads: not on the web.
 
 mod check;
-mod components;
 mod emit;
+mod fluid;
 mod gather;
 mod pace;
 mod runner;
 mod settings;
 mod shape;
 mod show;
+mod solids;
 #[cfg(test)]
 mod tests;
 mod world;
@@ -77,8 +78,9 @@ use bevy::prelude::*;
 
 pub use self::{
     check::SalvaError,
-    components::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaLoad, SalvaShape},
+    fluid::SalvaFluid,
     settings::{SalvaMode, SalvaSettings, SalvaStatus},
+    solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
 use crate::{emitter::ParticleEmitter, schedule::FluidSystems};

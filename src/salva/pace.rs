@@ -135,8 +135,8 @@ mod tests {
                 pace.done(STEP, STEP, 3.5 * BUDGET);
             }
         }
-        // 3.5 budgets each: two in seven frames.
-        assert!((27..=30).contains(&started), "{started}");
+        // 3.5 budgets each in a hundred: 28.6, the last perhaps still unpaid.
+        assert!((28..=29).contains(&started), "{started}");
     }
 
     #[test]

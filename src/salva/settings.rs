@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 
+use crate::range::SettingRange;
+
 /// How [`SalvaPlugin`](super::SalvaPlugin) simulates. May be changed at any time.
 ///
 /// What is out of its range is moved to the nearest end.
@@ -15,28 +17,36 @@ pub struct SalvaSettings {
     /// Whether time stands still. Default: false. It also does while `Time` is paused.
     pub paused: bool,
     /// Acceleration of everything. Unit: m/s², default: 9.81 downwards.
+    #[reflect(@SettingRange::new(-1e3, 1e3).unit("m/s²").open())]
     pub gravity: Vec3,
     /// Time in a step. Unit: s, range 0.001..=0.05, default 1/120. Shorter: calmer, stiffer,
     /// dearer.
+    #[reflect(@SettingRange::new(0.001, 0.05).unit("s").logarithmic())]
     pub step: f32,
     /// Into how many substeps a step is divided at most, when its fastest particle would move
     /// farther than 0.4 of a diameter in one. Range 1..=16, default 4.
+    #[reflect(@SettingRange::new(1.0, 16.0))]
     pub max_substeps: u32,
     /// Steps done in one go at most. What a frame owes beyond them is dropped: after a hitch the
     /// liquid does not catch up. Range 1..=64, default 8.
+    #[reflect(@SettingRange::new(1.0, 64.0).logarithmic())]
     pub max_steps: u32,
     /// How much of each frame's time the simulation may take, on its own threads. Unit: s as
     /// [`Duration`], default 12 ms. A step that has begun is finished, and paid back in the
     /// following frames. Less: more of the machine is left for others, and liquid gets slow
     /// sooner. Unused in [`SalvaMode::Lockstep`].
+    #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().open())]
     pub budget: Duration,
     /// Particles faster than this are taken for broken and removed. Unit: m/s, range 1..=10000,
     /// default 100.
+    #[reflect(@SettingRange::new(1.0, 1e4).unit("m/s").logarithmic())]
     pub max_speed: f32,
     /// The least coordinates a particle may have; those outside are removed. Unit: m,
     /// default -1000 each.
+    #[reflect(@SettingRange::new(-1e3, 1e3).unit("m").open())]
     pub low: Vec3,
     /// The greatest coordinates a particle may have. Unit: m, default 1000 each.
+    #[reflect(@SettingRange::new(-1e3, 1e3).unit("m").open())]
     pub high: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! What needs a look inside: that nobody waits.
+//! What needs a look inside: that nobody waits, and what is shown meanwhile.
 
 use std::{
     sync::{Arc, Mutex, mpsc},
@@ -7,7 +7,9 @@ use std::{
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 
-use super::{SalvaFluid, SalvaPlugin, SalvaStatus, runner::Simulation};
+use super::{
+    SalvaBody, SalvaFluid, SalvaPlugin, SalvaSettings, SalvaShape, SalvaStatus, runner::Simulation,
+};
 use crate::particles::FluidParticles;
 
 const FRAME: Duration = Duration::from_millis(16);
@@ -120,4 +122,45 @@ fn particles_replaced_in_flight_are_not_overwritten() {
     let shown = positions(&app);
     assert_eq!(shown.len(), 1);
     assert!((4.5..5.0).contains(&shown[0].y), "{shown:?}");
+}
+
+#[test]
+fn what_is_shown_moves_evenly_between_steps() {
+    let mut app = app();
+    // Four frames in two steps; nothing pushes.
+    let frame = Duration::from_secs_f32(1.0 / 240.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    app.world_mut().resource_mut::<SalvaSettings>().gravity = Vec3::ZERO;
+    let velocity = vec3(1.0, -2.0, 0.5);
+    let water = drop_of_water(&mut app);
+    app.world_mut()
+        .get_mut::<SalvaFluid>(water)
+        .unwrap()
+        .velocity = velocity;
+    let body = SalvaBody {
+        velocity,
+        ..SalvaBody::new(SalvaShape::Sphere { radius: 0.1 }, 500.0)
+    };
+    let away = Vec3::Y * 5.0;
+    let body = app
+        .world_mut()
+        .spawn((body, Transform::from_translation(away)))
+        .id();
+    let mut between = 0;
+    for _ in 0..100 {
+        app.update();
+        // Long enough for what a step of two particles takes, mostly.
+        std::thread::sleep(Duration::from_millis(2));
+        let shown = status(&app).shown;
+        let expected = velocity * shown as f32;
+        let particles = app.world().get::<FluidParticles>(water).unwrap();
+        let body = app.world().get::<Transform>(body).unwrap().translation - away;
+        for place in [particles.positions[0], body] {
+            assert!(place.abs_diff_eq(expected, 1e-4), "{place} for {expected}");
+        }
+        let steps = shown * 120.0;
+        between += u32::from((steps - steps.round()).abs() > 0.1);
+    }
+    // Steps alone would never lie between.
+    assert!(between > 10, "{between}");
 }

@@ -19,7 +19,7 @@ use super::{
     Id,
     convert::{from_liquid, liquid},
     geometry::Surface,
-    sampling::neighbors,
+    sampling::{DEPTH, neighbors},
     solid::Solid,
 };
 
@@ -130,10 +130,7 @@ impl CouplingManager for Coupling<'_> {
                 continue;
             };
             for (position, force) in boundary.positions.iter().zip(forces.iter()) {
-                let impulse = from_liquid(force) * timestep.dt();
-                let arm = from_liquid(position) - solid.center;
-                solid.push += impulse;
-                solid.turn += arm.cross(impulse);
+                solid.receive(from_liquid(position), from_liquid(force) * timestep.dt());
             }
         }
     }
@@ -147,7 +144,7 @@ fn place(solid: &Solid, boundary: &mut Boundary, nearby: &Nearby, radius: f32) {
         boundary.velocities.push(liquid(solid.velocity_at(place)));
     };
     match solid.geometry.surface {
-        Surface::Plane => nearby.on_plane(solid.at, radius, 2.0 * radius, add),
+        Surface::Plane => nearby.on_plane(solid.at, DEPTH * radius, 2.0 * radius, add),
         Surface::Triangles(_) => {
             for sample in &solid.samples {
                 let place = solid.at * *sample;

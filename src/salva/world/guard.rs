@@ -20,6 +20,8 @@ pub(crate) struct GuardedSurface<'a> {
 
 /// A particle that was stopped.
 pub(crate) struct Stopped {
+    /// Index of the surface.
+    pub(crate) surface: usize,
     /// Where it is now.
     pub(crate) position: Vec3,
     /// Out of the surface that stopped it.
@@ -78,7 +80,7 @@ pub(crate) fn stop(
     margin: f32,
 ) -> Option<Stopped> {
     let mut stopped: Option<Stopped> = None;
-    for surface in surfaces {
+    for (index, surface) in surfaces.iter().enumerate() {
         let end = stopped.as_ref().map_or(to, |stopped| stopped.position);
         if !surface.is_near(from, end) {
             continue;
@@ -94,6 +96,7 @@ pub(crate) fn stop(
             Some(_) => start,
         };
         stopped = Some(Stopped {
+            surface: index,
             position: surface.after * place,
             normal: surface.after.rotation * normal,
             surface_motion: surface.after * place - surface.before * place,

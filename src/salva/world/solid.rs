@@ -94,6 +94,10 @@ impl Solid {
             .friction(contact.friction)
             .restitution(contact.restitution);
         let (body, _) = rigid_world.insert(builder.pose(pose(at)), collider);
+        // Otherwise known only after its first step: until then nothing could push it.
+        if let Some(body) = rigid_world.bodies.get_mut(body) {
+            body.recompute_mass_properties_from_colliders(&rigid_world.colliders);
+        }
         let boundary = Boundary::new(Vec::new(), InteractionGroups::all());
         let mut solid = Self {
             geometry,
@@ -126,7 +130,10 @@ impl Solid {
         let Surface::Triangles(faces) = &self.geometry.surface else {
             return true;
         };
-        let samples = sampling::sample(&sampling::inset(faces, radius), 2.0 * radius);
+        let samples = sampling::sample(
+            &sampling::inset(faces, sampling::DEPTH * radius),
+            2.0 * radius,
+        );
         let is_sampled = samples.is_some();
         self.samples = samples.unwrap_or_default();
         is_sampled
@@ -196,6 +203,28 @@ impl Solid {
         if let Some(body) = rigid_world.bodies.get_mut(self.body) {
             body.set_next_kinematic_position(pose(self.at));
         }
+    }
+
+    /// How much faster an impulse of 1 N s at a world-space `place` along `normal` makes it there:
+    /// 1/kg, 0 for what moves as it is told.
+    pub(crate) fn mobility(&self, rigid_world: &PhysicsWorld, place: Vec3, normal: Vec3) -> f32 {
+        let Some(body) = rigid_world
+            .bodies
+            .get(self.body)
+            .filter(|_| self.is_dynamic())
+        else {
+            return 0.0;
+        };
+        let mass = &body.mass_properties();
+        let lever = rigid((place - self.center).cross(normal));
+        let turning = mass.effective_world_inv_inertia * lever;
+        mass.effective_inv_mass.max_element() + lever.dot(turning)
+    }
+
+    /// Takes an impulse (N s) at a world-space `place`.
+    pub(crate) fn receive(&mut self, place: Vec3, impulse: Vec3) {
+        self.push += impulse;
+        self.turn += (place - self.center).cross(impulse);
     }
 
     /// Hands a body what the liquid has given it.

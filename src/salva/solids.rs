@@ -1,93 +1,8 @@
-//! What stands on an entity to be simulated.
+//! What stands on a solid to be simulated, and what it tells.
 
 use bevy::prelude::*;
 
-use crate::{emitter::ExternalMotion, particles::FluidParticles};
-
-/// A fluid that salva moves.
-///
-/// The positions of the [`FluidParticles`] beside it are where it starts; from then on they are
-/// overwritten. Particles within a solid (that is no mesh) are
-/// taken out at the start. To start anew, write positions
-/// yourself: they are taken over, at [`velocity`](Self::velocity). Neighbours at rest are two radii
-/// apart: fill with a lattice of that spacing, one radius off the walls.
-///
-/// All fluids have one radius in the world, that of the first; another is said once in the log, and
-/// stays where it is. Fluids of different [`density`](Self::density) press on each other and part.
-///
-/// A [`ParticleEmitter`](crate::ParticleEmitter) beside it lets particles into the simulation, no
-/// more than fit beside each other; its lifetime, capacity and bounds hold, its gravity and drag do
-/// not.
-///
-/// ```
-/// # use bevy::prelude::*;
-/// # use bevy_fluid::prelude::*;
-/// fn setup(mut commands: Commands) {
-///     commands.spawn((
-///         SalvaBoundary::tank(vec3(1.0, 0.8, 1.0)),
-///         Transform::from_xyz(0.0, 0.4, 0.0),
-///     ));
-///     let column = (0..4000)
-///         .map(|i| ivec3(i % 10, i / 200, i / 10 % 20).as_vec3() * 0.05)
-///         .map(|place| place + vec3(-0.475, 0.025, -0.475))
-///         .collect();
-///     commands.spawn((FluidParticles::new(column, 0.025), SalvaFluid::WATER));
-/// }
-/// ```
-#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, ExternalMotion)]
-pub struct SalvaFluid {
-    /// Density at rest. Unit: kg/m³, range 1..=100000, default 1000. Against it bodies float or
-    /// sink.
-    pub density: f32,
-    /// Kinematic viscosity. Unit: m²/s, range 0..=10, default 0.01. That is honey's; water's own
-    /// (1e-6) is far below what particles of some centimetres resolve, and less than about 0.005
-    /// only lets them rattle. Above about 0.08 radius² / step (0.06 for 2.5 cm at the default step)
-    /// it has no further effect.
-    pub viscosity: f32,
-    /// The same between the fluid and solids: how much they hold it back, or drag it along.
-    /// Unit: m²/s, range 0..=10, default 0.002. 0: it slips.
-    pub wall_viscosity: f32,
-    /// Share of its velocity that each particle loses to the air. Unit: 1/s, range 0..=1000,
-    /// default 0.
-    pub drag: f32,
-    /// How much the surface contracts: γ of Akinci et al. 2013. Range 0..=10, default 0; about 1
-    /// for drops of water. It costs a third more time.
-    pub surface_tension: f32,
-    /// How much it clings to solids: β of Akinci et al. 2013. Range 0..=10, default 0.
-    pub adhesion: f32,
-    /// What it starts with, in the world's space. Unit: m/s, default 0.
-    pub velocity: Vec3,
-}
-
-impl SalvaFluid {
-    /// Water in particles of some centimetres: the default.
-    pub const WATER: Self = Self {
-        density: 1000.0,
-        viscosity: 0.01,
-        wall_viscosity: 0.002,
-        drag: 0.0,
-        surface_tension: 0.0,
-        adhesion: 0.0,
-        velocity: Vec3::ZERO,
-    };
-
-    /// Honey: heavy, slow, and it clings.
-    pub const HONEY: Self = Self {
-        density: 1420.0,
-        viscosity: 0.05,
-        wall_viscosity: 0.05,
-        adhesion: 1.0,
-        ..Self::WATER
-    };
-}
-
-impl Default for SalvaFluid {
-    fn default() -> Self {
-        Self::WATER
-    }
-}
+use crate::range::SettingRange;
 
 /// A shape in the space of its entity, whose scale counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -102,30 +17,37 @@ pub enum SalvaShape {
     /// A solid block about the origin.
     Cuboid {
         /// Whole sides. Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
         size: Vec3,
     },
     /// A box about the origin with liquid inside, open above. Only for boundaries.
     Tank {
         /// Whole sides of the inside. Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
         size: Vec3,
     },
     /// A ball about the origin. Of an uneven scale the greatest counts.
     Sphere {
         /// Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
         radius: f32,
     },
     /// A capsule along y about the origin. Of an uneven scale the greatest counts.
     Capsule {
         /// Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
         radius: f32,
         /// Between the centres of its caps. Unit: m, from 0.
+        #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic().start(0.2))]
         length: f32,
     },
     /// A cylinder along y about the origin. Of an uneven scale the greatest counts.
     Cylinder {
         /// Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
         radius: f32,
         /// Unit: m, > 0.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.2))]
         height: f32,
     },
     /// The endless ground below the entity's plane y = 0. Only for boundaries.
@@ -144,8 +66,10 @@ pub struct SalvaBoundary {
     /// Default: the entity's mesh.
     pub shape: SalvaShape,
     /// Friction of bodies on it. Range 0..=10, default 0.5.
+    #[reflect(@SettingRange::new(0.0, 10.0))]
     pub friction: f32,
     /// How much bodies bounce off it. Range 0..=1, default 0.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub restitution: f32,
 }
 
@@ -194,14 +118,19 @@ pub struct SalvaBody {
     pub shape: SalvaShape,
     /// Unit: kg/m³, range 20..=100000, default 500: wood. Lighter than a fifth of the liquid it
     /// trembles, as the liquid answers a step late.
+    #[reflect(@SettingRange::new(20.0, 1e5).unit("kg/m³").logarithmic())]
     pub density: f32,
     /// What it starts with. Unit: m/s, default 0.
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m/s").open())]
     pub velocity: Vec3,
     /// What it starts with. Unit: rad/s, default 0.
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("rad/s").open())]
     pub angular_velocity: Vec3,
     /// Range 0..=10, default 0.5.
+    #[reflect(@SettingRange::new(0.0, 10.0))]
     pub friction: f32,
     /// How much it bounces. Range 0..=1, default 0.2.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub restitution: f32,
 }
 

@@ -1,0 +1,128 @@
+//! Weight, free fall, Archimedes.
+
+use bevy::prelude::*;
+use bevy_fluid::prelude::*;
+
+use crate::pool::{
+    GRAVITY, RADIUS, STEP, WATER, app, block, load, mean, particles, pool, run, spawn_water,
+    status, weight_of,
+};
+
+#[test]
+fn a_column_keeps_its_height_and_rests_its_weight_on_the_tank() {
+    let mut app = app();
+    let depth = 1.2;
+    let (tank, water) = pool(&mut app, vec3(0.8, 2.0, 0.8), depth);
+    run(&mut app, 1.5);
+    let (mut heights, mut forces) = (Vec::new(), Vec::new());
+    for _ in 0..120 {
+        app.update();
+        heights.push(mean(particles(&app, water).iter().map(|p| p.y)));
+        forces.push(load(&app, tank).force);
+    }
+    let count = particles(&app, water).len();
+    assert_eq!(count, 8 * 8 * 12, "none is lost");
+    // Volume: the mean height is half the depth.
+    let height = mean(heights.into_iter());
+    assert!((height / (0.5 * depth) - 1.0).abs() < 0.03, "{height}");
+    // The push of walls cancels, that of the floor is the weight.
+    let force = forces.iter().sum::<Vec3>() / forces.len() as f32;
+    let weight = weight_of(count);
+    println!(
+        "column: height {} force {}",
+        height / (0.5 * depth),
+        force.y / -weight
+    );
+    assert!(
+        (force.y / -weight - 1.0).abs() < 0.03,
+        "{force} of {weight}"
+    );
+    assert!(force.xz().length() < 0.03 * weight, "{force}");
+}
+
+#[test]
+fn a_drop_falls_by_half_g_t_squared() {
+    let mut app = app();
+    let water = spawn_water(&mut app, block(Vec3::splat(-0.1), Vec3::splat(0.1)));
+    run(&mut app, 0.5);
+    let fallen = -mean(particles(&app, water).iter().map(|p| p.y));
+    let time = status(&app).simulated as f32;
+    assert!((time - 0.5).abs() < 1e-4, "lockstep keeps time: {time}");
+    // Euler's symplectic step is early by g t dt / 2.
+    let exact = 0.5 * GRAVITY * time * time;
+    let error = 0.5 * GRAVITY * time * STEP;
+    assert!((fallen - exact).abs() < 1.1 * error, "{fallen} of {exact}");
+}
+
+/// Height of a body's centre above the floor after some time in a pool of depth 0.8 over 1.2 × 1.2.
+fn settle_body(shape: SalvaShape, density: f32, from: f32) -> (App, f32) {
+    let mut app = app();
+    pool(&mut app, vec3(1.2, 2.0, 1.2), 0.8);
+    let body = app.world_mut().spawn((
+        SalvaBody::new(shape, density),
+        Transform::from_xyz(0.0, from, 0.0),
+    ));
+    let body = body.id();
+    run(&mut app, 2.5);
+    let mut heights = Vec::new();
+    for _ in 0..60 {
+        app.update();
+        heights.push(app.world().get::<Transform>(body).unwrap().translation.y);
+    }
+    (app, mean(heights.into_iter()))
+}
+
+#[test]
+fn a_box_floats_as_deep_as_archimedes_has_it() {
+    let side = 0.4;
+    for density in [300.0, 600.0] {
+        let size = Vec3::splat(side);
+        let (_, height) = settle_body(SalvaShape::Cuboid { size }, density, 1.1);
+        let immersed = side * density / WATER;
+        let level = 0.8 + immersed * side * side / (1.2 * 1.2);
+        let expected = level - immersed + 0.5 * side;
+        // The liquid's surface is no sharper than a particle, and as its level is off by up to 3 %
+        // so is the body's.
+        let error = height - expected;
+        println!("float {density}: {height} for {expected}, error {error}");
+        assert!(
+            error.abs() < RADIUS,
+            "density {density}: {height} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn what_is_heavier_sinks_to_the_bottom() {
+    let radius = 0.2;
+    let (_, height) = settle_body(SalvaShape::Sphere { radius }, 3000.0, 1.1);
+    assert!((height - radius).abs() < 0.01, "{height}");
+}
+
+/// Fastest particle and mean height in the first fifth of a second of a pool, by steps of `step`.
+fn wake(step: f32) -> (f32, f32) {
+    let mut app = app();
+    app.world_mut().resource_mut::<SalvaSettings>().step = step * 1.001;
+    let (_, water) = pool(&mut app, vec3(0.8, 2.0, 0.8), 0.8);
+    let (mut fastest, mut highest) = (0.0_f32, 0.0_f32);
+    let mut before = particles(&app, water).to_vec();
+    for _ in 0..24 {
+        app.update();
+        let now = particles(&app, water).to_vec();
+        let ways = before.iter().zip(&now).map(|(a, b)| a.distance(*b));
+        fastest = ways.fold(fastest, |fastest, way| fastest.max(way / STEP));
+        highest = highest.max(mean(now.iter().map(|p| p.y)));
+        before = now;
+    }
+    (fastest, highest)
+}
+
+#[test]
+fn a_filled_tank_does_not_start_with_a_jump() {
+    for step in [STEP, STEP / 4.0, STEP / 8.0] {
+        let (fastest, highest) = wake(step);
+        println!("wake {step}: {fastest} {highest}");
+        assert!(fastest < 1.0, "{fastest} m/s by {step}");
+        assert!(highest < 0.41, "{highest} m by {step}");
+    }
+}
