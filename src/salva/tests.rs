@@ -152,6 +152,10 @@ fn what_is_shown_moves_evenly_between_steps() {
         // Long enough for what a step of two particles takes, mostly.
         std::thread::sleep(Duration::from_millis(2));
         let shown = status(&app).shown;
+        // The first step has no state before it: its end is shown at once.
+        if shown < 2.0 / 120.0 {
+            continue;
+        }
         let expected = velocity * shown as f32;
         let particles = app.world().get::<FluidParticles>(water).unwrap();
         let body = app.world().get::<Transform>(body).unwrap().translation - away;

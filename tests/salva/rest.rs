@@ -22,9 +22,11 @@ fn a_column_keeps_its_height_and_rests_its_weight_on_the_tank() {
     }
     let count = particles(&app, water).len();
     assert_eq!(count, 8 * 8 * 12, "none is lost");
-    // Volume: the mean height is half the depth.
+    // Volume: the mean height is half the depth. Particles at rest lie up to 0.2 radii nearer to
+    // the walls than in a lattice, and to each other by what the solver leaves: of a column of 16
+    // radii between four walls 0.2 × 4 / 16 = 5 %. salva's own volumes would be off by 20 %.
     let height = mean(heights.into_iter());
-    assert!((height / (0.5 * depth) - 1.0).abs() < 0.03, "{height}");
+    assert!((height / (0.5 * depth) - 1.0).abs() < 0.05, "{height}");
     // The push of walls cancels, that of the floor is the weight.
     let force = forces.iter().sum::<Vec3>() / forces.len() as f32;
     let weight = weight_of(count);
@@ -33,11 +35,9 @@ fn a_column_keeps_its_height_and_rests_its_weight_on_the_tank() {
         height / (0.5 * depth),
         force.y / -weight
     );
-    assert!(
-        (force.y / -weight - 1.0).abs() < 0.03,
-        "{force} of {weight}"
-    );
-    assert!(force.xz().length() < 0.03 * weight, "{force}");
+    // All that is not handed over would be missing, and the column swings by less.
+    let error = (force + Vec3::Y * weight).length() / weight;
+    assert!(error < 0.01, "{force} of {weight}");
 }
 
 #[test]
@@ -54,22 +54,26 @@ fn a_drop_falls_by_half_g_t_squared() {
     assert!((fallen - exact).abs() < 1.1 * error, "{fallen} of {exact}");
 }
 
-/// Height of a body's centre above the floor after some time in a pool of depth 0.8 over 1.2 × 1.2.
-fn settle_body(shape: SalvaShape, density: f32, from: f32) -> (App, f32) {
+/// Sides of the pool for bodies, m.
+const POOL: f32 = 1.2;
+
+/// Mean heights of a body's centre and of the water after some time in a pool of depth 0.8.
+fn settle_body(shape: SalvaShape, density: f32, from: f32) -> (f32, f32) {
     let mut app = app();
-    pool(&mut app, vec3(1.2, 2.0, 1.2), 0.8);
+    let (_, water) = pool(&mut app, vec3(POOL, 2.0, POOL), 0.8);
     let body = app.world_mut().spawn((
         SalvaBody::new(shape, density),
         Transform::from_xyz(0.0, from, 0.0),
     ));
     let body = body.id();
     run(&mut app, 2.5);
-    let mut heights = Vec::new();
+    let (mut heights, mut water_heights) = (Vec::new(), Vec::new());
     for _ in 0..60 {
         app.update();
         heights.push(app.world().get::<Transform>(body).unwrap().translation.y);
+        water_heights.push(mean(particles(&app, water).iter().map(|p| p.y)));
     }
-    (app, mean(heights.into_iter()))
+    (mean(heights.into_iter()), mean(water_heights.into_iter()))
 }
 
 #[test]
@@ -77,25 +81,32 @@ fn a_box_floats_as_deep_as_archimedes_has_it() {
     let side = 0.4;
     for density in [300.0, 600.0] {
         let size = Vec3::splat(side);
-        let (_, height) = settle_body(SalvaShape::Cuboid { size }, density, 1.1);
+        let (height, water) = settle_body(SalvaShape::Cuboid { size }, density, 1.1);
         let immersed = side * density / WATER;
-        let level = 0.8 + immersed * side * side / (1.2 * 1.2);
+        // The level follows from the water's own mean height, which is a little lower than it should be:
+        // that of a full pool of the level, less that of the part that the box takes.
+        let (area, displaced) = (POOL * POOL, immersed * side * side);
+        let sum = displaced + water * area;
+        let rest = displaced * (0.5 * immersed + water);
+        let level = (sum + (sum * sum - 2.0 * area * rest).sqrt()) / area;
         let expected = level - immersed + 0.5 * side;
-        // The liquid's surface is no sharper than a particle, and as its level is off by up to 3 %
-        // so is the body's.
-        let error = height - expected;
-        println!("float {density}: {height} for {expected}, error {error}");
+        println!("float {density}: {height} for {expected} at level {level}");
+        // The water's surface is no sharper than half a particle.
+        let error = (height - expected).abs();
         assert!(
-            error.abs() < RADIUS,
-            "density {density}: {height} for {expected}"
+            error < 0.5 * RADIUS,
+            "{density} kg/m³: {height} for {expected}"
         );
+        // And the level, like the column's height, by 5 %: it would be this without loss.
+        let full = 0.8 + displaced / area;
+        assert!((level / full - 1.0).abs() < 0.05, "{level} for {full}");
     }
 }
 
 #[test]
 fn what_is_heavier_sinks_to_the_bottom() {
     let radius = 0.2;
-    let (_, height) = settle_body(SalvaShape::Sphere { radius }, 3000.0, 1.1);
+    let (height, _) = settle_body(SalvaShape::Sphere { radius }, 3000.0, 1.1);
     assert!((height - radius).abs() < 0.01, "{height}");
 }
 
@@ -119,10 +130,11 @@ fn wake(step: f32) -> (f32, f32) {
 
 #[test]
 fn a_filled_tank_does_not_start_with_a_jump() {
+    // No particle is faster than one that falls for a tenth of a second, and the whole rises by no more
+    // than half a percent. With samples one radius behind walls it would be 1.2 to 8 m/s.
     for step in [STEP, STEP / 4.0, STEP / 8.0] {
         let (fastest, highest) = wake(step);
-        println!("wake {step}: {fastest} {highest}");
         assert!(fastest < 1.0, "{fastest} m/s by {step}");
-        assert!(highest < 0.41, "{highest} m by {step}");
+        assert!(highest < 0.402, "{highest} m by {step}");
     }
 }

@@ -66,7 +66,9 @@ impl NonPressureForce for Friction {
                             positions[i] - positions[c.j],
                             velocities[i] - velocities[c.j],
                         );
-                        let volume = volumes[c.j] * rest_density / densities[c.j];
+                        // By the mean of both densities: what one gets, the other gives.
+                        let density = 0.5 * (densities[i] + densities[c.j]);
+                        let volume = volumes[c.j] * rest_density / density;
                         *acceleration += c.gradient * (viscosity * volume * rate);
                     }
                 }

@@ -11,11 +11,12 @@ pub(crate) type Triangle = [Vec3; 3];
 
 /// How far behind the surface, in radii.
 ///
-/// A layer of particles counts for more than its layer of a lattice, as each has the volume of all
-/// that is missing about it (Akinci et al. 2012, equation 4). At one radius liquid that fills a tank as a
-/// lattice would be 6 % too dense at the walls, and shoot up in the first step. Here it has its rest
-/// density: the kernel's integral over a plane at 1 + 1.2 radii, over that at 0, is what a layer of
-/// the lattice weighs.
+/// A layer of particles counts for more than a layer of a lattice, as each has the volume of all
+/// that is missing about it (Akinci et al. 2012, equation 4): at one radius liquid that fills a
+/// tank as a lattice is 6 % too dense at the walls, and jumps in the first step, the higher the
+/// shorter the step. At 1.2 it has just its rest density: there the kernel's integral over the plane
+/// through the samples is that of a layer of the lattice. At rest particles then lie some tenth of a
+/// radius nearer to the wall than in the lattice: a column 16 radii wide is 4 % lower for it.
 pub(crate) const DEPTH: f32 = 1.2;
 /// How far a corner may move over the depth it is moved for: sharper edges are blunted.
 const LONGEST_MITER: f32 = 2.0;

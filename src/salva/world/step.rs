@@ -32,7 +32,9 @@ impl World {
         for _ in 0..job.steps {
             self.step(job, &mut left);
             self.report.steps += 1;
-            if job.budget.is_some_and(|budget| start.elapsed() >= budget) {
+            if job.budget.is_some_and(|budget| start.elapsed() >= budget)
+                && !super::broken("budget")
+            {
                 break;
             }
         }
@@ -166,6 +168,9 @@ impl World {
         }
         let fluids = self.liquid_world.fluids_mut().as_mut_slice();
         let mut solids: Vec<_> = self.solids.values_mut().collect();
+        if super::broken("guard") {
+            return;
+        }
         stops::apply(&self.stops, fluids, &mut solids, &self.rigid_world);
     }
 }
@@ -196,7 +201,8 @@ mod tests {
         let mut frame = Frame::default();
         let mut world = World::default();
         let report = world.advance(&job(8, Some(Duration::ZERO)), &mut frame);
-        assert_eq!((report.steps, report.simulated), (1, 0.01));
+        assert_eq!(report.steps, 1);
+        assert!((report.simulated - 0.01).abs() < 1e-6);
         let report = world.advance(&job(8, None), &mut frame);
         assert_eq!(report.steps, 8);
         assert!((report.simulated - 0.08).abs() < 1e-6);
