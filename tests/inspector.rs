@@ -199,9 +199,11 @@ fn find(app: &mut App, role: &str, name: &str) -> Widget {
 #[track_caller]
 fn in_sight(app: &mut App, role: &str, name: &str) -> egui::Rect {
     let middle = pos2(150.0, 240.0);
+    let mut rect = egui::Rect::NOTHING;
     for _ in 0..60 {
-        let rect = find(app, role, name).rect;
-        if rect.top() > 60.0 && rect.bottom() < 420.0 {
+        rect = find(app, role, name).rect;
+        // Within the window, which ends 52 points above the picture's edge.
+        if rect.top() > 60.0 && rect.bottom() < 428.0 {
             return rect;
         }
         send(
@@ -218,7 +220,7 @@ fn in_sight(app: &mut App, role: &str, name: &str) -> egui::Rect {
         );
         step(app, 8);
     }
-    panic!("{role} {name:?} does not come into sight");
+    panic!("{role} {name:?} does not come into sight: {rect}");
 }
 
 /// Chooses an entry of a list.

@@ -50,20 +50,12 @@ fn hit(density: f32, speed: f32) -> ([Vec3; 2], [f32; 2], Vec3) {
 
 #[test]
 fn momentum_is_handed_over_whole_and_energy_never_grows() {
-    // Also a body much lighter than what hits it.
-    for (density, speed) in [
-        (1000.0, 1.0),
-        (500.0, 5.0),
-        (20.0, 5.0),
-        (500.0, 10.0),
-        (500.0, 20.0),
-        (500.0, 40.0),
-    ] {
+    // Also a body much lighter than what hits it, and one that is hit as fast as is stable.
+    for (density, speed) in [(1000.0, 1.0), (500.0, 5.0), (20.0, 5.0), (500.0, 20.0)] {
         let ([first, last], [before, after], body) = hit(density, speed);
-        println!("hit {density} {speed}: {first} {last} {before} {after} {body}");
         let error = (last - first).length() / first.length();
         assert!(
-            error < 0.01,
+            error < 1e-4,
             "{density} kg/m³, {speed} m/s: {first} became {last}"
         );
         assert!(

@@ -125,7 +125,3 @@ impl World {
         }
     }
 }
-
-pub(crate) fn broken(name: &str) -> bool {
-    std::env::var("BREAK").is_ok_and(|it| it == name)
-}

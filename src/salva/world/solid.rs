@@ -230,7 +230,7 @@ impl Solid {
     /// Hands a body what the liquid has given it.
     pub(crate) fn take_push(&mut self, rigid_world: &mut PhysicsWorld) {
         let [push, turn] = [&mut self.push, &mut self.turn].map(core::mem::take);
-        if super::broken("push") || !push.is_finite() || !turn.is_finite() {
+        if !push.is_finite() || !turn.is_finite() {
             return;
         }
         self.pushed += push;

@@ -32,9 +32,7 @@ impl World {
         for _ in 0..job.steps {
             self.step(job, &mut left);
             self.report.steps += 1;
-            if job.budget.is_some_and(|budget| start.elapsed() >= budget)
-                && !super::broken("budget")
-            {
+            if job.budget.is_some_and(|budget| start.elapsed() >= budget) {
                 break;
             }
         }
@@ -168,9 +166,6 @@ impl World {
         }
         let fluids = self.liquid_world.fluids_mut().as_mut_slice();
         let mut solids: Vec<_> = self.solids.values_mut().collect();
-        if super::broken("guard") {
-            return;
-        }
         stops::apply(&self.stops, fluids, &mut solids, &self.rigid_world);
     }
 }
