@@ -143,7 +143,7 @@ fn a_shaken_tank_does_not_leak_and_gives_all_the_energy_there_is() {
             .map(|(v, p)| mass * (0.5 * v.length_squared() + GRAVITY * p.y))
             .sum();
         let gain = energy - rest;
-        let momentum = mass * velocities.map(|v| v.xz()).sum::<Vec2>();
+        let momentum = mass * velocities.map(Vec3Swizzles::xz).sum::<Vec2>();
         // What the water has, the tank has given; some of it is lost.
         assert!(gain < work, "{gain} J of {work} J in update {i}");
         // Momentum is that of the update's mean velocity, the impulse that at its end, and what the

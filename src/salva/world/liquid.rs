@@ -192,7 +192,7 @@ impl Liquid {
         newborn.positions.len() - positions.len()
     }
 
-    pub(crate) fn remove_all(&mut self, world: &mut LiquidWorld) {
+    pub(crate) fn remove_all(&self, world: &mut LiquidWorld) {
         if let Some(fluid) = world.fluids_mut().get_mut(self.handle) {
             for i in 0..fluid.num_particles() {
                 fluid.delete_particle_at_next_timestep(i);

@@ -61,8 +61,8 @@ pub(crate) fn inset(triangles: &[Triangle], depth: f32) -> Vec<Triangle> {
 /// on them farther than about `spacing` from the nearest. None where they would be too many.
 pub(crate) fn sample(triangles: &[Triangle], spacing: f32) -> Option<Vec<Vec3>> {
     let area: f32 = triangles.iter().map(area).sum();
-    // A surface that is not a number compares as too large.
-    if !(area / (spacing * spacing) < MOST_SAMPLES) {
+    let count = area / (spacing * spacing);
+    if count.is_nan() || count >= MOST_SAMPLES {
         return None;
     }
     let closest = CLOSEST * spacing;
