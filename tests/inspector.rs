@@ -408,6 +408,7 @@ fn presets_variants_and_views_are_chosen_from_lists() {
 }
 
 /// Opens a section.
+#[cfg(any(feature = "recordings", feature = "salva"))]
 #[track_caller]
 fn unfold(app: &mut App, section: &str) {
     let rect = in_sight(app, "Button", section);
@@ -416,6 +417,7 @@ fn unfold(app: &mut App, section: &str) {
 }
 
 /// Moves a slider to the middle of its range.
+#[cfg(any(feature = "recordings", feature = "salva"))]
 #[track_caller]
 fn halve(app: &mut App, slider: &str) {
     let rect = in_sight(app, "Slider", slider);

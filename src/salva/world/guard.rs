@@ -160,7 +160,8 @@ mod tests {
                 let [u, v, w] =
                     [0.819_173, 0.671_044, 0.549_7].map(|step| (i as f32 * step).fract());
                 let height = 2.0 * u - 1.0;
-                let around = Vec2::from_angle(6.283 * v) * (1.0 - height * height).sqrt();
+                let around =
+                    Vec2::from_angle(core::f32::consts::TAU * v) * (1.0 - height * height).sqrt();
                 let from = 2.0 * vec3(around.x, height, around.y);
                 // Somewhere within.
                 let to = 0.15 * vec3(w - 0.5, v - 0.5, u - 0.5);
