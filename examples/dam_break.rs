@@ -1,4 +1,5 @@
-//! A dam breaks in a glass tank: salva3d simulates, `bevy_fluid` draws.
+//! A dam breaks in a glass tank, simulated while you watch; a crate, a plank and a ball are carried
+//! away.
 //!
 //! Liquid runs past an opaque pillar that stands in it; a ball lies in front of the tank, pillars
 //! stand behind it. Turn the camera with the mouse; press R to start over. `--out FILE.png
@@ -9,7 +10,7 @@ use bevy_fluid::prelude::*;
 use fluid_stage::{
     StagePlugins,
     scenery::{Scenery, frame_camera, orbit_camera},
-    simulation::{Simulation, cylinder, dam},
+    simulation::dam,
 };
 
 /// Inside of the tank, m.
@@ -22,27 +23,35 @@ const RADIUS: f32 = 0.025;
 const PILLAR: (Vec2, f32) = (vec2(0.45, -0.1), 0.13);
 const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 
+/// What floats, and where it starts.
+#[derive(Component)]
+struct Floating(Transform);
+
 fn main() -> AppExit {
     let stage = StagePlugins {
-        frames: 45,
+        frames: 60,
         title: "dam break · bevy_fluid".into(),
         ..default()
     };
+    let stage = stage.with_args();
+    let mode = match stage.out {
+        // A picture waits for its water.
+        Some(_) => SalvaMode::Lockstep,
+        None => SalvaMode::Background,
+    };
     App::new()
-        .add_plugins((stage.with_args(), FluidPlugin::default()))
-        .insert_resource(dam_break())
+        .add_plugins((stage, FluidPlugin::default(), SalvaPlugin))
+        .insert_resource(SalvaSettings { mode, ..default() })
         .add_systems(Startup, setup)
         .add_systems(Update, restart)
-        .add_systems(PostUpdate, simulate.in_set(FluidSystems::Simulate))
         .run()
 }
 
-fn dam_break() -> Simulation {
-    let pillar = cylinder(PILLAR, TANK.y, RADIUS);
-    Simulation::new(TANK, RADIUS, dam(TANK, DAM, RADIUS), pillar)
+fn water() -> Vec<Vec3> {
+    dam(TANK, DAM, RADIUS)
 }
 
-fn setup(mut scenery: Scenery, water: Res<Simulation>) {
+fn setup(mut scenery: Scenery) {
     let inside = Aabb3d::new(Vec3::Y * 0.5 * TANK.y, 0.5 * TANK);
     scenery.checker_floor(Vec3::ZERO, 5.0, 20);
     scenery.pillars(inside, 5);
@@ -50,22 +59,27 @@ fn setup(mut scenery: Scenery, water: Res<Simulation>) {
     scenery.sun(TO_SUN, 6.0, true);
     let sky = scenery.sky(TO_SUN);
 
-    let (foot, radius) = PILLAR;
-    opaque(
-        &mut scenery,
-        Cylinder::new(radius, TANK.y * 0.9),
-        vec3(foot.x, 0.45 * TANK.y, foot.y),
-        Color::srgb(0.9, 0.45, 0.1),
-    );
-    opaque(
-        &mut scenery,
-        Sphere::new(0.2),
-        vec3(-0.35, 0.2, 0.5 * TANK.z + 0.45),
-        Color::srgb(0.75, 0.1, 0.2),
-    );
-
+    // Walls twice as high for the water: nothing spills.
+    let walls = TANK * vec3(1.0, 2.0, 1.0);
     scenery.commands.spawn((
-        FluidParticles::new(water.positions(), RADIUS),
+        SalvaBoundary::tank(walls),
+        Transform::from_xyz(0.0, TANK.y, 0.0),
+    ));
+    let (foot, radius) = PILLAR;
+    let height = TANK.y * 0.9;
+    let at = Transform::from_xyz(foot.x, 0.5 * height, foot.y);
+    let orange = Color::srgb(0.9, 0.45, 0.1);
+    let pillar = SalvaBoundary::new(SalvaShape::Cylinder { radius, height });
+    let mut solid = opaque(&mut scenery, Cylinder::new(radius, height), at, orange);
+    solid.insert(pillar);
+    let ball = Transform::from_xyz(-0.35, 0.2, 0.5 * TANK.z + 0.45);
+    let red = Color::srgb(0.75, 0.1, 0.2);
+    opaque(&mut scenery, Sphere::new(0.2), ball, red);
+
+    float(&mut scenery);
+    scenery.commands.spawn((
+        FluidParticles::new(water(), RADIUS),
+        SalvaFluid::WATER,
         FluidMaterial {
             // A lake's water, so that depth shows in a tank.
             medium: Medium::absorbing(LinearRgba::rgb(0.3, 0.72, 0.8), 1.0),
@@ -80,32 +94,52 @@ fn setup(mut scenery: Scenery, water: Res<Simulation>) {
     ));
 }
 
-fn opaque(scenery: &mut Scenery, shape: impl Into<Mesh>, at: Vec3, color: Color) {
+fn float(scenery: &mut Scenery) {
+    let crate_size = Vec3::splat(0.26);
+    let at = Transform::from_xyz(0.95, 0.13, 0.22).with_rotation(Quat::from_rotation_y(0.4));
+    let wood = Color::srgb(0.55, 0.34, 0.16);
+    let body = SalvaBody::new(SalvaShape::Cuboid { size: crate_size }, 350.0);
+    opaque(scenery, Cuboid::from_size(crate_size), at, wood).insert((body, Floating(at)));
+
+    let plank = vec3(0.5, 0.06, 0.16);
+    let at = Transform::from_xyz(0.1, 0.03, 0.25).with_rotation(Quat::from_rotation_y(-0.5));
+    let pine = Color::srgb(0.8, 0.62, 0.36);
+    let body = SalvaBody::new(SalvaShape::Cuboid { size: plank }, 450.0);
+    opaque(scenery, Cuboid::from_size(plank), at, pine).insert((body, Floating(at)));
+
+    let radius = 0.11;
+    let at = Transform::from_xyz(0.9, radius, -0.25);
+    let body = SalvaBody::new(SalvaShape::Sphere { radius }, 250.0);
+    let yellow = Color::srgb(0.95, 0.75, 0.1);
+    opaque(scenery, Sphere::new(radius), at, yellow).insert((body, Floating(at)));
+}
+
+fn opaque<'a>(
+    scenery: &'a mut Scenery,
+    shape: impl Into<Mesh>,
+    at: Transform,
+    color: Color,
+) -> EntityCommands<'a> {
     let mesh = scenery.meshes.add(shape);
     let material = scenery.materials.add(color);
-    scenery.commands.spawn((
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
-        Transform::from_translation(at),
-    ));
+    scenery
+        .commands
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
 }
 
-fn simulate(
-    mut water: ResMut<Simulation>,
+/// What is written by anybody else is taken over, at rest.
+fn restart(
     mut fluids: Query<&mut FluidParticles>,
-    time: Res<Time>,
+    mut floating: Query<(&Floating, &mut Transform)>,
+    keys: Res<ButtonInput<KeyCode>>,
 ) {
-    if time.delta_secs() == 0.0 {
+    if !keys.just_pressed(KeyCode::KeyR) {
         return;
     }
-    water.step(time.delta_secs());
     for mut fluid in &mut fluids {
-        water.write_positions(&mut fluid.positions);
+        fluid.positions = water();
     }
-}
-
-fn restart(mut water: ResMut<Simulation>, keys: Res<ButtonInput<KeyCode>>) {
-    if keys.just_pressed(KeyCode::KeyR) {
-        *water = dam_break();
+    for (start, mut transform) in &mut floating {
+        *transform = start.0;
     }
 }

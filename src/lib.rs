@@ -39,7 +39,9 @@
 //! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
 //! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
 //! [`FluidSystems::Simulate`]. They do not push each other. With the feature `recordings`, `recording`
-//! plays numbered particle files into them, loaded in the background, and writes such files.
+//! plays numbered particle files into them, loaded in the background, and writes such files. With
+//! `salva`, `SalvaPlugin` simulates liquids live, among boundaries and floating bodies; see the module
+//! `salva`.
 //!
 //! # Looking inside
 //!
@@ -69,6 +71,8 @@ mod range;
 #[cfg(feature = "recordings")]
 pub mod recording;
 pub mod render;
+#[cfg(feature = "salva")]
+pub mod salva;
 mod schedule;
 mod settings;
 pub mod shape;
@@ -99,6 +103,11 @@ pub use crate::{
 
 /// What most programs need.
 pub mod prelude {
+    #[cfg(feature = "salva")]
+    pub use crate::salva::{
+        SalvaBody, SalvaBoundary, SalvaFluid, SalvaMode, SalvaPlugin, SalvaSettings, SalvaShape,
+        SalvaStatus,
+    };
     pub use crate::{
         FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
         ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,

@@ -134,10 +134,20 @@ impl Plugin for FluidInspectorPlugin {
             .show::<ParticleCollider>()
             .show::<RainShelter>()
             .show::<RainStreaks>();
+        #[cfg(feature = "recordings")]
+        inspector.show::<crate::recording::RecordingPlayer>();
+        #[cfg(feature = "salva")]
+        inspector
+            .show::<crate::salva::SalvaFluid>()
+            .show::<crate::salva::SalvaBoundary>()
+            .show::<crate::salva::SalvaBody>()
+            .show::<crate::salva::SalvaSettings>();
         app.insert_resource(inspector)
             .add_plugins(presets::plugin)
             .add_systems(Update, toggle)
             .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open));
+        #[cfg(feature = "salva")]
+        app.add_plugins(presets::salva::plugin);
     }
 }
 

@@ -75,7 +75,7 @@ macro_rules! presets {
                 &[$((stringify!($name), Self::$name)),+];
         })+
 
-        pub(super) fn plugin(app: &mut App) {
+        pub(in crate::inspector) fn plugin(app: &mut App) {
             app$(.register_type_data::<$type, ReflectPresets>())+;
         }
     };
@@ -90,4 +90,14 @@ presets! {
     PlaneFit: DEFAULT, THESIS;
     Bilateral: DEFAULT, THESIS;
     Rain: DRIZZLE, RAIN, HEAVY, CLOUDBURST;
+}
+
+#[cfg(feature = "salva")]
+pub(super) mod salva {
+    use super::*;
+    use crate::salva::SalvaFluid;
+
+    presets! {
+        SalvaFluid: WATER, HONEY;
+    }
 }

@@ -6,7 +6,7 @@ use bevy::{ecs::entity::EntityHashMap, prelude::*};
 use thiserror::Error;
 
 use super::{asset::FluidRecording, cache::LoadedFrames, frame::is_radius};
-use crate::particles::FluidParticles;
+use crate::{particles::FluidParticles, range::SettingRange};
 
 const MAX_RATE: f32 = 100.0;
 const CACHES: [usize; 2] = [2, 1024];
@@ -34,9 +34,11 @@ pub struct RecordingPlayer {
     /// Where in the recording it is; set it to seek. Unit: s from the first frame. Finite, default 0.
     /// It is kept between 0 and the recording's [`end`](FluidRecording::end), or, where it repeats,
     /// below its [`duration`](FluidRecording::duration).
+    #[reflect(@SettingRange::new(0.0, 600.0).unit("s").open())]
     pub time: f64,
     /// Seconds of recorded time per second. Range −100..=100, default 1. Higher: faster; 0 stands
     /// still; negative: backwards.
+    #[reflect(@SettingRange::new(-100.0, 100.0))]
     pub rate: f32,
     /// Whether the clock stands still. Default: false.
     pub paused: bool,
@@ -47,8 +49,10 @@ pub struct RecordingPlayer {
     pub interpolation: Interpolation,
     /// The most frames that are held in memory, loading ones included. Range 2..=1024, default 8.
     /// Higher: slow files and fast play are better served.
+    #[reflect(@SettingRange::new(2.0, 1024.0).unit("frames").logarithmic())]
     pub cache: usize,
     /// Radius where the files do not hold it. Unit: m, > 0. Default: none.
+    #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open().start(0.025))]
     pub radius: Option<f32>,
 }
 

@@ -120,7 +120,7 @@ impl Walker<'_> {
             .push_id(field.name, |ui| {
                 row(ui, field, equal == Some(false), |ui, label| {
                     leaf(ui, label, value, field.range)
-                        .unwrap_or_else(|| self.choice(ui, label, value))
+                        .unwrap_or_else(|| self.choice(ui, label, value, field.range))
                 })
             })
             .inner;
@@ -143,9 +143,19 @@ impl Walker<'_> {
     }
 
     /// What stands in the row of a value with parts: a list of its variants or presets.
-    fn choice(&self, ui: &mut Ui, label: Id, value: &mut dyn PartialReflect) -> bool {
+    fn choice(
+        &self,
+        ui: &mut Ui,
+        label: Id,
+        value: &mut dyn PartialReflect,
+        range: Option<&SettingRange>,
+    ) -> bool {
         match value.reflect_ref() {
-            ReflectRef::Enum(_) => self.variants(ui, label, value),
+            _ if is_handle(value) => {
+                ui.label(RichText::new("an asset").weak());
+                false
+            }
+            ReflectRef::Enum(_) => self.variants(ui, label, value, range),
             ReflectRef::Struct(_) | ReflectRef::TupleStruct(_) => {
                 self.presets(ui, label, value, VALUE)
             }
@@ -199,5 +209,15 @@ fn has_widget(value: &dyn PartialReflect) -> bool {
         TypeId::of::<Vec3>(),
         TypeId::of::<Vec4>(),
     ];
-    id.is_some_and(|id| wholes.contains(&id))
+    id.is_some_and(|id| wholes.contains(&id)) || is_handle(value)
+}
+
+/// Whether a value stands for an asset: its variants are nobody's choice.
+fn is_handle(value: &dyn PartialReflect) -> bool {
+    let paths = value
+        .get_represented_type_info()
+        .map(TypeInfo::type_path_table);
+    paths.is_some_and(|paths| {
+        paths.crate_name() == Some("bevy_asset") && paths.ident() == Some("Handle")
+    })
 }

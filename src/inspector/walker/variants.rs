@@ -19,7 +19,13 @@ use crate::{
 };
 
 impl Walker<'_> {
-    pub(super) fn variants(&self, ui: &mut Ui, label: Id, value: &mut dyn PartialReflect) -> bool {
+    pub(super) fn variants(
+        &self,
+        ui: &mut Ui,
+        label: Id,
+        value: &mut dyn PartialReflect,
+        range: Option<&SettingRange>,
+    ) -> bool {
         let Some(TypeInfo::Enum(info)) = value.get_represented_type_info() else {
             return false;
         };
@@ -44,7 +50,7 @@ impl Walker<'_> {
         let Some(next) = next else {
             return false;
         };
-        let Some(parts) = self.new_variant(next) else {
+        let Some(parts) = self.new_variant(next, range) else {
             return false;
         };
         value
@@ -88,7 +94,7 @@ impl Walker<'_> {
                         continue;
                     };
                     let docs = part.docs().or(info.docs());
-                    let range = SettingRange::of_unnamed(part);
+                    let range = SettingRange::of_unnamed(part).or(field.range);
                     (info.name(), docs, range, part.type_id())
                 }
                 _ => continue,
@@ -116,14 +122,20 @@ impl Walker<'_> {
         edited
     }
 
-    /// What a variant holds when it is chosen; `None` where some part has no first value.
-    fn new_variant(&self, variant: &VariantInfo) -> Option<DynamicVariant> {
+    /// What a variant holds when it is chosen; `None` where some part has no first value. `range`
+    /// is that of an option's field, and holds for what is in the option.
+    fn new_variant(
+        &self,
+        variant: &VariantInfo,
+        range: Option<&SettingRange>,
+    ) -> Option<DynamicVariant> {
         Some(match variant {
             VariantInfo::Unit(_) => DynamicVariant::Unit,
             VariantInfo::Tuple(info) => {
                 let mut parts = DynamicTuple::default();
                 for part in info.iter() {
-                    parts.insert_boxed(self.first(part.type_id(), SettingRange::of_unnamed(part))?);
+                    let range = SettingRange::of_unnamed(part).or(range);
+                    parts.insert_boxed(self.first(part.type_id(), range)?);
                 }
                 DynamicVariant::Tuple(parts)
             }

@@ -1,6 +1,10 @@
 //! The inspector, driven without a window: egui gets the events, and its tree for screen readers
 //! tells where its widgets are.
 
+mod copying;
+#[cfg(any(feature = "recordings", feature = "salva"))]
+mod live;
+
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticsStore},
     input::{
@@ -37,7 +41,12 @@ struct Weather {
 struct CameraMoves(u32);
 
 fn show() -> App {
+    show_with(|_| ())
+}
+
+fn show_with(more: impl FnOnce(&mut App)) -> App {
     let mut app = headless_app(SIZE, |app| {
+        more(app);
         app.add_plugins((FluidPlugin::default(), FluidInspectorPlugin::default()))
             .init_resource::<CameraMoves>()
             .add_systems(
@@ -70,7 +79,10 @@ fn show() -> App {
 }
 
 fn opened() -> App {
-    let mut app = show();
+    open(show())
+}
+
+fn open(mut app: App) -> App {
     app.world_mut().resource_mut::<FluidInspector>().open = true;
     step(&mut app, 2);
     listen(&mut app);
@@ -201,9 +213,11 @@ fn find(app: &mut App, role: &str, name: &str) -> Widget {
 #[track_caller]
 fn in_sight(app: &mut App, role: &str, name: &str) -> egui::Rect {
     let middle = pos2(150.0, 240.0);
+    let mut rect = egui::Rect::NOTHING;
     for _ in 0..60 {
-        let rect = find(app, role, name).rect;
-        if rect.top() > 60.0 && rect.bottom() < 420.0 {
+        rect = find(app, role, name).rect;
+        // Within the window, which ends 52 points above the picture's edge.
+        if rect.top() > 60.0 && rect.bottom() < 428.0 {
             return rect;
         }
         send(
@@ -220,7 +234,7 @@ fn in_sight(app: &mut App, role: &str, name: &str) -> egui::Rect {
         );
         step(app, 8);
     }
-    panic!("{role} {name:?} does not come into sight");
+    panic!("{role} {name:?} does not come into sight: {rect}");
 }
 
 /// Chooses an entry of a list.
@@ -405,77 +419,4 @@ fn presets_variants_and_views_are_chosen_from_lists() {
         right(&counts) != right(&liquid),
         "the view beside the window"
     );
-}
-
-/// What a button puts into the clipboard.
-#[track_caller]
-fn copied(app: &mut App, button: &str) -> String {
-    let rect = in_sight(app, "Button", button);
-    send(app, [Event::PointerMoved(rect.center())]);
-    let mut copied = Vec::new();
-    for pressed in [true, false] {
-        let event = Event::PointerButton {
-            pos: rect.center(),
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: default(),
-        };
-        send(app, [event]);
-        let context = context(app);
-        let output = app.world().get::<EguiOutput>(context).unwrap();
-        copied.extend(output.platform_output.commands.clone());
-    }
-    match &copied[..] {
-        [OutputCommand::CopyText(text)] => text.clone(),
-        _ => panic!("{copied:?}"),
-    }
-}
-
-#[test]
-fn settings_are_copied_as_code() {
-    let mut app = opened();
-    let mut cameras = app.world_mut().query::<&mut ScreenSpaceFluid>();
-    *cameras.single_mut(app.world_mut()).unwrap() = ScreenSpaceFluid::FAST;
-    let settings = "ScreenSpaceFluid {\n    refractions: Refractions::One,\n    ..default()\n}";
-    assert_eq!(copied(&mut app, "Copy as Rust"), settings);
-
-    let camera = copied(&mut app, "copy camera");
-    assert!(
-        camera.starts_with("commands.spawn((\n    Name::new(\"eye\"),\n"),
-        "{camera}"
-    );
-    assert!(camera.contains("\n    Camera3d::default(),\n"), "{camera}");
-    assert!(
-        camera.contains(&settings.replace('\n', "\n    ")),
-        "{camera}"
-    );
-    let fluid = copied(&mut app, "copy fluid");
-    let [name, kernel] = ["Name::new(\"pond\")", "SurfaceKernel::default()"];
-    assert!(fluid.contains(name) && fluid.contains(kernel), "{fluid}");
-    let resource = "commands.insert_resource(Weather {\n    wet: true,\n});";
-    assert_eq!(
-        copied(&mut app, "Copy all as Rust"),
-        format!("{camera}\n{fluid}\n{resource}")
-    );
-}
-
-#[test]
-fn counts_and_times_are_in_bevys_store() {
-    let mut app = opened();
-    step(&mut app, 5);
-    let particles = ball(0.4, 0.05).len() as f64;
-    let store = app.world().resource::<DiagnosticsStore>();
-    let value = |path| store.get(&path).and_then(Diagnostic::value);
-    assert_eq!(value(diagnostics::PARTICLES), Some(particles));
-    let classes = [diagnostics::BULK, diagnostics::INTERIOR, diagnostics::SPRAY];
-    let sum: f64 = classes.into_iter().filter_map(value).sum();
-    assert_eq!(sum, particles);
-    assert_eq!(value(diagnostics::DROPPED), Some(0.0));
-    assert_eq!(value(diagnostics::SHAPE_TOTAL), Some(0.0), "nothing moves");
-    for pass in diagnostics::PASSES {
-        for path in [diagnostics::gpu_time(pass), diagnostics::cpu_time(pass)] {
-            let time = store.get(&path).and_then(Diagnostic::value);
-            assert!(time.is_some_and(|time| time >= 0.0), "{path}: {time:?}");
-        }
-    }
 }

@@ -1,0 +1,250 @@
+//! Settings that make no sense: what is said of them, and what is simulated.
+
+use bevy::prelude::*;
+use thiserror::Error;
+
+use super::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaShape};
+use crate::complaints::AboutField;
+
+/// Why something is not simulated as it is set.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SalvaError {
+    /// A field is out of its range.
+    #[error("`{field}` is {value}; it must be from {min} to {max}")]
+    Range {
+        /// Component and field.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// Smallest value allowed.
+        min: f32,
+        /// Largest value allowed.
+        max: f32,
+    },
+    /// A velocity that is not a number.
+    #[error("`{field}` is {value}; it must be finite")]
+    Vector {
+        /// Component and field.
+        field: &'static str,
+        /// Its value.
+        value: Vec3,
+    },
+    /// The radius of a fluid's particles.
+    #[error("`FluidParticles::radius` is {0}; it must be finite and above 0")]
+    Radius(f32),
+    /// One world has particles of one size.
+    #[error("its particles' radius is {own}, but that of all simulated fluids is {others}")]
+    OtherRadius {
+        /// Radius in the world's space, m.
+        own: f32,
+        /// Radius of the fluid that came first, m.
+        others: f32,
+    },
+    /// There is no `Mesh3d`, or no triangles in it that the main world has.
+    #[error("there is no `Mesh3d` with triangles in the main world")]
+    Mesh,
+    /// A size that is none.
+    #[error("`SalvaShape` {0:?} (scaled) is none: sizes must be finite and above 0")]
+    Shape(SalvaShape),
+    /// A body that would be hollow or endless.
+    #[error("a body cannot be a `SalvaShape::Tank` or a `Plane`")]
+    BodyShape,
+    /// A transform that is not a number.
+    #[error("its transform is not finite")]
+    Transform,
+    /// A surface of more particles than can be simulated.
+    #[error("its surface is too large for particles of this radius: liquid sees only its shell")]
+    Surface,
+}
+
+impl AboutField for SalvaError {
+    fn field(&self) -> &'static str {
+        match self {
+            Self::Range { field, .. } | Self::Vector { field, .. } => field,
+            Self::Radius(_) | Self::OtherRadius { .. } => "radius",
+            Self::Mesh => "mesh",
+            Self::Shape(_) | Self::BodyShape => "shape",
+            Self::Transform => "transform",
+            Self::Surface => "surface",
+        }
+    }
+}
+
+/// A number, its range, and what stands in for one that is none.
+struct Field<'a>(&'static str, &'a mut f32, f32, f32, f32);
+
+impl Field<'_> {
+    fn check(&self) -> Result<(), SalvaError> {
+        let &Self(field, &mut value, min, max, _) = self;
+        // NaN is in no range.
+        if (min..=max).contains(&value) {
+            return Ok(());
+        }
+        Err(SalvaError::Range {
+            field,
+            value,
+            min,
+            max,
+        })
+    }
+
+    fn clamp(self) {
+        let Self(_, value, min, max, absent) = self;
+        *value = if value.is_nan() {
+            absent
+        } else {
+            value.clamp(min, max)
+        };
+    }
+}
+
+fn finite(field: &'static str, value: Vec3) -> Result<(), SalvaError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(SalvaError::Vector { field, value })
+    }
+}
+
+fn or_zero(value: Vec3) -> Vec3 {
+    if value.is_finite() { value } else { Vec3::ZERO }
+}
+
+impl SalvaFluid {
+    #[rustfmt::skip]
+    fn fields(&mut self) -> [Field<'_>; 6] {
+        [
+            Field("SalvaFluid::density", &mut self.density, 1.0, 1e5, Self::WATER.density),
+            Field("SalvaFluid::viscosity", &mut self.viscosity, 0.0, 10.0, Self::WATER.viscosity),
+            Field("SalvaFluid::wall_viscosity", &mut self.wall_viscosity, 0.0, 10.0, Self::WATER.wall_viscosity),
+            Field("SalvaFluid::drag", &mut self.drag, 0.0, 1e3, 0.0),
+            Field("SalvaFluid::surface_tension", &mut self.surface_tension, 0.0, 10.0, 0.0),
+            Field("SalvaFluid::adhesion", &mut self.adhesion, 0.0, 10.0, 0.0),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), SalvaError> {
+        let mut own = *self;
+        own.fields().iter().try_for_each(Field::check)?;
+        finite("SalvaFluid::velocity", self.velocity)
+    }
+
+    /// The nearest fluid that makes sense; what is not a number gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let mut own = *self;
+        own.fields().into_iter().for_each(Field::clamp);
+        own.velocity = or_zero(own.velocity);
+        own
+    }
+}
+
+impl SalvaBoundary {
+    #[rustfmt::skip]
+    fn fields(&mut self) -> [Field<'_>; 2] {
+        [
+            Field("SalvaBoundary::friction", &mut self.friction, 0.0, 10.0, 0.5),
+            Field("SalvaBoundary::restitution", &mut self.restitution, 0.0, 1.0, 0.0),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), SalvaError> {
+        let mut own = *self;
+        own.fields().iter().try_for_each(Field::check)
+    }
+
+    /// The nearest boundary that makes sense; what is not a number gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let mut own = *self;
+        own.fields().into_iter().for_each(Field::clamp);
+        own
+    }
+}
+
+impl SalvaBody {
+    #[rustfmt::skip]
+    fn fields(&mut self) -> [Field<'_>; 3] {
+        [
+            Field("SalvaBody::density", &mut self.density, 20.0, 1e5, 500.0),
+            Field("SalvaBody::friction", &mut self.friction, 0.0, 10.0, 0.5),
+            Field("SalvaBody::restitution", &mut self.restitution, 0.0, 1.0, 0.2),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), SalvaError> {
+        if matches!(self.shape, SalvaShape::Tank { .. } | SalvaShape::Plane) {
+            return Err(SalvaError::BodyShape);
+        }
+        let mut own = *self;
+        own.fields().iter().try_for_each(Field::check)?;
+        finite("SalvaBody::velocity", self.velocity)?;
+        finite("SalvaBody::angular_velocity", self.angular_velocity)
+    }
+
+    /// The nearest body that makes sense; what is not a number gives way to the default. The
+    /// shape stays as it is.
+    pub fn clamped(&self) -> Self {
+        let mut own = *self;
+        own.fields().into_iter().for_each(Field::clamp);
+        own.velocity = or_zero(own.velocity);
+        own.angular_velocity = or_zero(own.angular_velocity);
+        own
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_make_sense() {
+        for fluid in [SalvaFluid::WATER, SalvaFluid::HONEY] {
+            assert_eq!(fluid.validate(), Ok(()));
+            assert_eq!(fluid.clamped(), fluid);
+        }
+        assert_eq!(SalvaBoundary::default().validate(), Ok(()));
+        assert_eq!(SalvaBody::default().validate(), Ok(()));
+    }
+
+    #[test]
+    fn bad_fields_are_named_and_clamped() {
+        for value in [-1.0, f32::NAN, f32::INFINITY] {
+            let fluid = SalvaFluid {
+                viscosity: value,
+                ..SalvaFluid::WATER
+            };
+            let error = fluid.validate().unwrap_err().to_string();
+            assert!(error.contains("SalvaFluid::viscosity") && error.contains(&value.to_string()));
+            assert_eq!(fluid.clamped().validate(), Ok(()));
+
+            let body = SalvaBody {
+                density: value,
+                ..default()
+            };
+            let error = body.validate().unwrap_err().to_string();
+            assert!(error.contains("SalvaBody::density"), "{error}");
+            assert_eq!(body.clamped().validate(), Ok(()));
+
+            let boundary = SalvaBoundary {
+                friction: value,
+                ..default()
+            };
+            assert!(boundary.validate().is_err());
+            assert_eq!(boundary.clamped().validate(), Ok(()));
+        }
+        let endless = SalvaBody::new(SalvaShape::Plane, 500.0);
+        assert_eq!(endless.validate(), Err(SalvaError::BodyShape));
+    }
+}

@@ -1,0 +1,72 @@
+//! Emitters that feed a simulated fluid.
+
+use bevy::prelude::*;
+
+use super::{
+    SalvaFluid, SalvaSettings,
+    runner::Simulation,
+    world::{Command, Limits, Newborn},
+};
+use crate::emitter::{Emission, ParticleEmitter, step};
+
+/// What an emitter's fluid has been told to keep, by which it is told only changes.
+#[derive(Component, Default)]
+pub(crate) struct Kept(Option<Limits>);
+
+/// Tells of newborn particles, and of which are to stay.
+pub(crate) fn emit(
+    mut simulation: ResMut<Simulation>,
+    settings: Res<SalvaSettings>,
+    mut emitters: Query<
+        (
+            Entity,
+            Mut<ParticleEmitter>,
+            &GlobalTransform,
+            &mut Emission,
+            &mut Kept,
+        ),
+        With<SalvaFluid>,
+    >,
+    time: Res<Time>,
+) {
+    // Where the liquid moves in slow motion, so does what comes out.
+    let pace = if settings.paused {
+        0.0
+    } else {
+        simulation.pace.rate
+    };
+    let seconds = step(&time) * pace;
+    for (entity, mut emitter, transform, mut emission, mut kept) in &mut emitters {
+        let own = ParticleEmitter::take(&mut emitter, seconds);
+        let mut newborn = Newborn::default();
+        emission.emit(&own, transform, seconds, |birth| {
+            let fallen = 0.5 * birth.age * settings.gravity;
+            newborn
+                .positions
+                .push(birth.position + birth.age * (birth.velocity + fallen));
+            newborn
+                .velocities
+                .push(birth.velocity + birth.age * settings.gravity);
+        });
+        if !simulation.fluids.contains_key(&entity) {
+            kept.0 = None;
+            continue;
+        }
+        let id = entity.to_bits();
+        let limits = Limits {
+            lifetime: own.lifetime,
+            capacity: own.capacity as usize,
+            bounds: own.bounds.map(|bounds| {
+                let to_space = Mat4::from(transform.affine().inverse());
+                (to_space, [bounds.min, bounds.max])
+            }),
+        };
+        if kept.0 != Some(limits) {
+            kept.0 = Some(limits);
+            simulation.tell(Command::Limit(id, limits));
+        }
+        if !newborn.positions.is_empty() {
+            simulation.tell(Command::Add(id, newborn));
+        }
+    }
+}

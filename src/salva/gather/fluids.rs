@@ -1,0 +1,140 @@
+//! Fluids: new ones, changed ones, and particles that somebody else has written.
+
+use bevy::{
+    ecs::change_detection::Tick, math::Affine3A, prelude::*, transform::helper::TransformHelper,
+};
+
+use crate::{
+    complaints::Complaints,
+    emitter::ParticleEmitter,
+    particles::FluidParticles,
+    salva::{
+        SalvaError, SalvaFluid,
+        runner::Simulation,
+        world::{Command, Newborn, Substance},
+    },
+};
+
+/// What is known of a fluid that is simulated.
+pub(crate) struct FluidEntry {
+    /// World-space radius of its particles, m.
+    pub(crate) radius: f32,
+    /// When its particles were written last, by this plugin or as taken over.
+    pub(crate) written: Tick,
+    /// How many things the world must have been told to know these particles.
+    pub(crate) told: u64,
+    /// The transform that its particles were written with.
+    pub(crate) space: Affine3A,
+}
+
+/// Two radii that are the same but for rounding in transforms.
+const SAME_RADIUS: f32 = 1e-3;
+
+impl From<&SalvaFluid> for Substance {
+    fn from(fluid: &SalvaFluid) -> Self {
+        let fluid = fluid.clamped();
+        Self {
+            density: fluid.density,
+            viscosity: fluid.viscosity,
+            wall_viscosity: fluid.wall_viscosity,
+            drag: fluid.drag,
+            surface_tension: fluid.surface_tension,
+            adhesion: fluid.adhesion,
+        }
+    }
+}
+
+/// Tells of fluids that are new, other than they were, or gone.
+pub(crate) fn gather_fluids(
+    mut simulation: ResMut<Simulation>,
+    mut fluids: Query<(
+        Entity,
+        Ref<SalvaFluid>,
+        &mut FluidParticles,
+        Option<&ParticleEmitter>,
+    )>,
+    mut gone: RemovedComponents<SalvaFluid>,
+    transforms: TransformHelper,
+    mut complaints: Local<Complaints>,
+    mut settings_complaints: Local<Complaints>,
+) {
+    for entity in gone.read() {
+        complaints.forget(entity);
+        settings_complaints.forget(entity);
+        if simulation.fluids.remove(&entity).is_some() {
+            simulation.tell(Command::RemoveFluid(entity.to_bits()));
+        }
+    }
+    for (entity, fluid, mut particles, emitter) in &mut fluids {
+        if fluid.is_changed()
+            && let Some(error) = settings_complaints.of(entity, fluid.validate())
+        {
+            warn!("fluid {entity}: {error}; it is simulated with the nearest that makes sense");
+        }
+        if let Some(emitter) = emitter {
+            let radius = emitter.clamped().particle_radius;
+            if particles.radius != radius {
+                particles.radius = radius;
+            }
+        }
+        let checked = simulation.take_fluid(entity, &fluid, &particles, &transforms);
+        if let Some(error) = complaints.of(entity, checked) {
+            warn!("fluid {entity} is not simulated: {error}");
+        }
+    }
+}
+
+impl Simulation {
+    fn take_fluid(
+        &mut self,
+        entity: Entity,
+        fluid: &Ref<SalvaFluid>,
+        particles: &Mut<FluidParticles>,
+        transforms: &TransformHelper,
+    ) -> Result<(), SalvaError> {
+        let id = entity.to_bits();
+        let known = self.fluids.get(&entity);
+        let is_written = known.is_some_and(|known| known.written == particles.last_changed());
+        if is_written {
+            if fluid.is_changed() {
+                self.tell(Command::Fluid(id, Substance::from(&**fluid)));
+            }
+            return Ok(());
+        }
+        let space = transforms.compute_global_transform(entity);
+        let space = space.map_err(|_| SalvaError::Transform)?.affine();
+        let radius = particles.radius * space.matrix3.determinant().abs().cbrt();
+        if !(radius.is_finite() && radius > 0.0) {
+            return Err(SalvaError::Radius(particles.radius));
+        }
+        if self.fluids.remove(&entity).is_some() {
+            self.tell(Command::RemoveFluid(id));
+        }
+        if let Some(other) = self.fluids.values().next() {
+            let others = other.radius;
+            if (radius / others - 1.0).abs() > SAME_RADIUS {
+                return Err(SalvaError::OtherRadius {
+                    own: radius,
+                    others,
+                });
+            }
+        } else {
+            self.tell(Command::Radius(radius));
+        }
+        self.tell(Command::Fluid(id, Substance::from(&**fluid)));
+        let places = particles.positions.iter();
+        let newborn = Newborn {
+            positions: places.map(|&place| space.transform_point3(place)).collect(),
+            velocities: vec![fluid.clamped().velocity],
+        };
+        let told = self.tell(Command::Replace(id, newborn));
+        let entry = FluidEntry {
+            radius,
+            written: particles.last_changed(),
+            told,
+            space,
+        };
+        self.fluids.insert(entity, entry);
+        Ok(())
+    }
+}

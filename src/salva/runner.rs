@@ -1,0 +1,240 @@
+//! Who has the simulated world: the app between jobs, another thread during one.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+    thread::available_parallelism,
+    time::Duration,
+};
+
+use bevy::{
+    ecs::entity::EntityHashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, TaskPool, block_on, futures::check_ready},
+};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::{
+    SalvaMode, SalvaSettings, SalvaStatus,
+    gather::{FluidEntry, SolidEntry},
+    pace::Pace,
+    world::{Command, Frame, Job, Report, World},
+};
+
+/// A world that comes back from a job, unless it panicked.
+type Finished = Option<(Box<World>, Frame, Report)>;
+
+/// The simulation as the app sees it.
+#[derive(Resource, Default)]
+pub(crate) struct Simulation {
+    /// None while a job has it.
+    world: Option<Box<World>>,
+    task: Option<Task<Finished>>,
+    /// What the world is told before its next job.
+    commands: Vec<Command>,
+    /// Commands ever given.
+    pub(crate) told: u64,
+    /// The last two finished states, and one to be filled.
+    pub(crate) from: Frame,
+    pub(crate) to: Frame,
+    spare: Frame,
+    /// Solids whose surfaces take too many particles: to be complained about.
+    pub(crate) unsampled: Vec<u64>,
+    pub(crate) pace: Pace,
+    planned: f64,
+    pub(crate) shown: f64,
+    pub(crate) fluids: EntityHashMap<FluidEntry>,
+    pub(crate) solids: EntityHashMap<SolidEntry>,
+    many_threads: Option<Arc<ThreadPool>>,
+    one_thread: Option<Arc<ThreadPool>>,
+    /// Called at the begin of every job, by tests.
+    #[cfg(test)]
+    pub(crate) before_job: Option<Arc<dyn Fn() + Send + Sync>>,
+}
+
+impl Simulation {
+    /// Tells the world something, and returns how many things it has been told with this one.
+    pub(crate) fn tell(&mut self, command: Command) -> u64 {
+        self.commands.push(command);
+        self.told += 1;
+        self.told
+    }
+
+    fn pool(&mut self, mode: SalvaMode) -> Option<Arc<ThreadPool>> {
+        let (pool, threads) = match mode {
+            SalvaMode::Lockstep => (&mut self.one_thread, 1),
+            SalvaMode::Background => {
+                let cores = available_parallelism().map_or(1, usize::from);
+                (&mut self.many_threads, cores.saturating_sub(1).max(1))
+            }
+        };
+        if pool.is_none() {
+            let builder = ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .thread_name(|i| format!("salva {i}"));
+            *pool = builder.build().ok().map(Arc::new);
+        }
+        pool.clone()
+    }
+
+    fn begin(&mut self, job: Job, mode: SalvaMode, status: &mut SalvaStatus) {
+        if status.stopped {
+            return;
+        }
+        let mut world = self.world.take().unwrap_or_default();
+        let mut frame = core::mem::take(&mut self.spare);
+        let commands = core::mem::take(&mut self.commands);
+        let pool = self.pool(mode);
+        self.planned = f64::from(job.steps) * f64::from(job.step);
+        #[cfg(test)]
+        let before_job = self.before_job.clone();
+        let work = move || {
+            let done = catch_unwind(AssertUnwindSafe(|| {
+                #[cfg(test)]
+                if let Some(before_job) = before_job {
+                    before_job();
+                }
+                world.apply(commands);
+                let report = world.advance(&job, &mut frame);
+                (world, frame, report)
+            }));
+            done.ok()
+        };
+        let work = move || match pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        };
+        match mode {
+            SalvaMode::Lockstep => self.finish(work(), status),
+            SalvaMode::Background => {
+                let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
+                self.task = Some(pool.spawn(async move { work() }));
+            }
+        }
+    }
+
+    fn finish(&mut self, finished: Finished, status: &mut SalvaStatus) {
+        let Some((world, frame, report)) = finished else {
+            error!("the simulation panicked; fluids and bodies stay where they are");
+            status.stopped = true;
+            return;
+        };
+        self.world = Some(world);
+        self.spare = core::mem::replace(&mut self.from, core::mem::replace(&mut self.to, frame));
+        let simulated = f64::from(report.simulated);
+        let took = report.took.as_secs_f64();
+        self.pace.done(simulated, self.planned, took);
+        if report.broken > 0 && status.broken == 0 {
+            warn!(
+                "{} particles were not finite or faster than `SalvaSettings::max_speed` and are \
+                 removed; further ones are counted in `SalvaStatus::broken`",
+                report.broken
+            );
+        }
+        status.broken += report.broken as u64;
+        status.step_time = report.took / report.steps.max(1);
+        status.simulated = self.to.time;
+        status.particles = self.to.liquids.iter().map(|it| it.ids.len()).sum();
+        self.unsampled.extend(report.unsampled);
+    }
+}
+
+/// Takes a finished job's results.
+pub(crate) fn collect(
+    mut simulation: ResMut<Simulation>,
+    settings: Res<SalvaSettings>,
+    mut status: ResMut<SalvaStatus>,
+) {
+    let Some(task) = &mut simulation.task else {
+        return;
+    };
+    let finished = match settings.mode {
+        SalvaMode::Background => check_ready(task),
+        SalvaMode::Lockstep => Some(block_on(task)),
+    };
+    if let Some(finished) = finished {
+        simulation.task = None;
+        simulation.finish(finished, &mut status);
+    }
+}
+
+/// Begins a job if one is due, and moves what is shown on.
+pub(crate) fn advance(
+    mut simulation: ResMut<Simulation>,
+    settings: Res<SalvaSettings>,
+    mut status: ResMut<SalvaStatus>,
+    time: Res<Time>,
+) {
+    let settings = settings.clamped();
+    let delta = if settings.paused {
+        0.0
+    } else {
+        time.delta_secs_f64()
+    };
+    let is_idle = simulation.fluids.is_empty() && simulation.solids.is_empty();
+    // What has been despawned is still to be removed.
+    if !(is_idle && simulation.commands.is_empty()) {
+        match settings.mode {
+            SalvaMode::Lockstep => simulation.lockstep(delta, &settings, &mut status),
+            SalvaMode::Background => simulation.background(delta, &settings, &mut status),
+        }
+    }
+    let simulation = &*simulation;
+    status.speed = simulation.pace.speed as f32;
+    status.shown = simulation.shown;
+    status.in_flight = simulation.task.is_some();
+}
+
+impl Simulation {
+    /// All of the update's time, in steps of equal length.
+    fn lockstep(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
+        if delta > 0.0 {
+            let steps = (delta / f64::from(settings.step) - 1e-3).ceil().max(1.0);
+            let step = (delta / steps) as f32;
+            self.pace = Pace::default();
+            self.begin(
+                job(settings, steps as u32, step, None),
+                settings.mode,
+                status,
+            );
+        }
+        self.shown = self.to.time;
+    }
+
+    fn background(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
+        let budget = settings.budget.as_secs_f64().max(1e-4);
+        self.pace.tick(delta, budget, self.task.is_some());
+        if self.task.is_none() && delta > 0.0 {
+            let steps = self.pace.due(f64::from(settings.step), settings.max_steps);
+            if steps > 0 {
+                let budget = Some(Duration::from_secs_f64(budget));
+                let job = job(settings, steps, settings.step, budget);
+                self.begin(job, settings.mode, status);
+            }
+        }
+        let moved = self.shown + delta * self.pace.rate;
+        self.shown = moved.clamp(self.from.time, self.to.time);
+    }
+
+    /// How far what is shown is on its way from the last state but one to the last, 0..1.
+    pub(crate) fn share(&self) -> f32 {
+        let whole = self.to.time - self.from.time;
+        if whole > 0.0 {
+            ((self.shown - self.from.time) / whole) as f32
+        } else {
+            1.0
+        }
+    }
+}
+
+fn job(settings: &SalvaSettings, steps: u32, step: f32, budget: Option<Duration>) -> Job {
+    Job {
+        steps,
+        step,
+        budget,
+        max_substeps: settings.max_substeps,
+        gravity: settings.gravity,
+        max_speed: settings.max_speed,
+        bounds: [settings.low, settings.high],
+    }
+}

@@ -1,0 +1,169 @@
+//! What the simulation is told, and what it tells.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+
+use super::{
+    Contact, Geometry, Id, Limits, Liquid, Motion, Newborn, Solid, Substance, World,
+    new_liquid_world,
+};
+
+/// A change from outside.
+pub(crate) enum Command {
+    /// From now on every particle has this radius (m).
+    Radius(f32),
+    /// A fluid is new, or of another substance.
+    Fluid(Id, Substance),
+    /// These are all particles of the fluid.
+    Replace(Id, Newborn),
+    /// These particles are added to the fluid where there is room for them.
+    Add(Id, Newborn),
+    /// Which particles of the fluid stay.
+    Limit(Id, Limits),
+    RemoveFluid(Id),
+    /// A solid is new, or another than it was.
+    Solid {
+        id: Id,
+        geometry: Geometry,
+        motion: Motion,
+        contact: Contact,
+        at: Isometry3d,
+        feels: bool,
+    },
+    /// Where a kinematic solid is to be at the end of the job.
+    Move(Id, Isometry3d),
+    /// Where a solid is at once.
+    Jump(Id, Isometry3d),
+    RemoveSolid(Id),
+}
+
+/// What is to be done in one go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Job {
+    pub(crate) steps: u32,
+    /// s.
+    pub(crate) step: f32,
+    /// No step is begun after this time.
+    pub(crate) budget: Option<Duration>,
+    pub(crate) max_substeps: u32,
+    /// m/s².
+    pub(crate) gravity: Vec3,
+    /// m/s; what is faster is taken out.
+    pub(crate) max_speed: f32,
+    /// What is outside is taken out, m.
+    pub(crate) bounds: [Vec3; 2],
+}
+
+/// What became of a job.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Report {
+    /// s.
+    pub(crate) simulated: f32,
+    pub(crate) took: Duration,
+    pub(crate) steps: u32,
+    /// Particles taken out because they were not finite or too fast.
+    pub(crate) broken: usize,
+    /// Solids whose surface takes too many particles.
+    pub(crate) unsampled: Vec<Id>,
+}
+
+impl World {
+    /// Applies `commands` in their order.
+    pub(crate) fn apply(&mut self, commands: impl IntoIterator<Item = Command>) {
+        for command in commands {
+            self.apply_one(command);
+            self.applied += 1;
+        }
+    }
+
+    fn apply_one(&mut self, command: Command) {
+        match command {
+            Command::Radius(radius) => self.set_radius(radius),
+            Command::Fluid(id, substance) => {
+                let liquid = self.liquids.entry(id).or_insert_with(|| {
+                    let free = self.free.pop();
+                    free.unwrap_or_else(|| Liquid::new(&mut self.liquid_world, &substance))
+                });
+                liquid.set_substance(&mut self.liquid_world, &substance);
+            }
+            Command::Replace(id, particles) => {
+                if let Some(liquid) = self.liquids.get_mut(&id) {
+                    liquid.remove_all(&mut self.liquid_world);
+                    let world = &mut self.liquid_world;
+                    self.report.broken += liquid.add(world, &particles, self.time);
+                    liquid.is_fresh = true;
+                }
+            }
+            Command::Add(id, particles) => {
+                if let Some(liquid) = self.liquids.get_mut(&id) {
+                    let world = &mut self.liquid_world;
+                    self.report.broken += liquid.squeeze_in(world, particles, self.time);
+                }
+            }
+            Command::Limit(id, limits) => {
+                if let Some(liquid) = self.liquids.get_mut(&id) {
+                    liquid.limits = limits;
+                }
+            }
+            Command::RemoveFluid(id) => {
+                if let Some(mut liquid) = self.liquids.remove(&id) {
+                    liquid.remove_all(&mut self.liquid_world);
+                    liquid.limits = Limits::default();
+                    self.free.push(liquid);
+                }
+            }
+            Command::Solid {
+                id,
+                geometry,
+                motion,
+                contact,
+                at,
+                feels,
+            } => {
+                self.remove_solid(id);
+                let (rigid_world, liquid_world) = (&mut self.rigid_world, &mut self.liquid_world);
+                let mut solid =
+                    Solid::new(rigid_world, liquid_world, geometry, motion, contact, at);
+                solid.feels |= feels;
+                if !solid.sample(self.liquid_world.particle_radius()) {
+                    self.report.unsampled.push(id);
+                }
+                self.solids.insert(id, solid);
+            }
+            Command::Move(id, at) => {
+                if let Some(solid) = self.solids.get_mut(&id) {
+                    solid.target = at;
+                }
+            }
+            Command::Jump(id, at) => {
+                if let Some(solid) = self.solids.get_mut(&id) {
+                    solid.jump(&mut self.rigid_world, at);
+                }
+            }
+            Command::RemoveSolid(id) => self.remove_solid(id),
+        }
+    }
+
+    /// Liquids are gone, solids stay.
+    fn set_radius(&mut self, radius: f32) {
+        if radius == self.liquid_world.particle_radius() {
+            return;
+        }
+        self.liquid_world = new_liquid_world(radius);
+        self.liquids.clear();
+        self.free.clear();
+        for (id, solid) in &mut self.solids {
+            if !solid.enter(&mut self.liquid_world) {
+                self.report.unsampled.push(*id);
+            }
+        }
+    }
+
+    fn remove_solid(&mut self, id: Id) {
+        if let Some(solid) = self.solids.remove(&id) {
+            self.liquid_world.remove_boundary(solid.boundary);
+            self.rigid_world.remove_body(solid.body);
+        }
+    }
+}

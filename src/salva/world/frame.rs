@@ -1,0 +1,82 @@
+//! A finished state, as it is handed to the main world.
+
+use bevy::prelude::*;
+
+use super::Id;
+
+/// Where everything is at a moment. Its buffers are filled again.
+#[derive(Default)]
+pub(crate) struct Frame {
+    /// Simulated seconds since the world was made.
+    pub(crate) time: f64,
+    /// How many commands the world had applied.
+    pub(crate) applied: u64,
+    pub(crate) liquids: Vec<LiquidFrame>,
+    pub(crate) bodies: Vec<(Id, Isometry3d)>,
+    /// Of solids that feel: force (N) and torque (N m) of the liquid, means over the job.
+    pub(crate) loads: Vec<(Id, Vec3, Vec3)>,
+}
+
+/// One fluid of a frame.
+#[derive(Default)]
+pub(crate) struct LiquidFrame {
+    pub(crate) id: Id,
+    /// Ascending names of the particles.
+    pub(crate) ids: Vec<u32>,
+    /// World space, m.
+    pub(crate) positions: Vec<Vec3>,
+}
+
+impl Frame {
+    pub(crate) fn liquid(&self, id: Id) -> Option<&LiquidFrame> {
+        self.liquids.iter().find(|liquid| liquid.id == id)
+    }
+
+    pub(crate) fn body(&self, id: Id) -> Option<Isometry3d> {
+        let found = self.bodies.iter().find(|(other, _)| *other == id);
+        found.map(|(_, at)| *at)
+    }
+}
+
+/// Where the particles of `to` are a `share` of the way from `from` to it. New ones are where
+/// they are in `to`; those that have gone are left out.
+pub(crate) fn blend<'a>(
+    from: Option<&'a LiquidFrame>,
+    to: &'a LiquidFrame,
+    share: f32,
+) -> impl Iterator<Item = Vec3> + 'a {
+    let (ids, positions) = from.map_or((&[][..], &[][..]), |from| (&*from.ids, &*from.positions));
+    let mut next = 0;
+    to.ids.iter().zip(&to.positions).map(move |(id, &end)| {
+        while ids.get(next).is_some_and(|before| before < id) {
+            next += 1;
+        }
+        match positions.get(next) {
+            Some(start) if ids[next] == *id => start.lerp(end, share),
+            _ => end,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(ids: &[u32], x: f32) -> LiquidFrame {
+        LiquidFrame {
+            id: 0,
+            ids: ids.to_vec(),
+            positions: ids.iter().map(|&id| vec3(x, id as f32, 0.0)).collect(),
+        }
+    }
+
+    #[test]
+    fn particles_are_matched_by_name() {
+        let (from, to) = (frame(&[1, 2, 5, 6], 0.0), frame(&[2, 6, 7, 9], 4.0));
+        let blended: Vec<_> = blend(Some(&from), &to, 0.25).collect();
+        let expected = [(1.0, 2.0), (1.0, 6.0), (4.0, 7.0), (4.0, 9.0)];
+        assert_eq!(blended, expected.map(|(x, y)| vec3(x, y, 0.0)));
+        let alone: Vec<_> = blend(None, &to, 0.25).collect();
+        assert_eq!(alone, to.positions);
+    }
+}

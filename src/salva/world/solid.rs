@@ -1,0 +1,250 @@
+//! Boundaries and bodies: what liquid runs against.
+
+use bevy::prelude::*;
+use salva3d::{
+    LiquidWorld,
+    object::{Boundary, BoundaryHandle, interaction_groups::InteractionGroups},
+    rapier::{
+        dynamics::{RigidBodyBuilder, RigidBodyHandle},
+        geometry::ColliderBuilder,
+        pipeline::PhysicsWorld,
+    },
+};
+
+use super::{
+    convert::{from_pose, from_rigid, pose, rigid},
+    geometry::{Geometry, Surface},
+    sampling,
+};
+
+/// How a solid moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// As it is told.
+    Kinematic,
+    /// By its weight and what pushes it.
+    Dynamic {
+        density: f32,
+        velocity: Vec3,
+        angular_velocity: Vec3,
+    },
+}
+
+/// How bodies meet a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Contact {
+    pub(crate) friction: f32,
+    pub(crate) restitution: f32,
+}
+
+/// A solid in both worlds.
+pub(crate) struct Solid {
+    pub(crate) geometry: Geometry,
+    pub(crate) motion: Motion,
+    pub(crate) body: RigidBodyHandle,
+    pub(crate) boundary: BoundaryHandle,
+    /// Surface particles in the solid's frame; a plane's are made where liquid is near.
+    pub(crate) samples: Vec<Vec3>,
+    pub(crate) before: Isometry3d,
+    pub(crate) at: Isometry3d,
+    /// Where it is to be at the end of the job.
+    pub(crate) target: Isometry3d,
+    /// World-space velocities and the centre they are about.
+    pub(crate) velocity: Vec3,
+    pub(crate) angular_velocity: Vec3,
+    pub(crate) center: Vec3,
+    /// Whether what liquid does to it is wanted; that costs a lock for every contact.
+    pub(crate) feels: bool,
+    /// What liquid has given it in this step, N s and N m s about the centre.
+    pub(crate) push: Vec3,
+    pub(crate) turn: Vec3,
+    /// The same, summed up over the job.
+    pub(crate) pushed: Vec3,
+    pub(crate) turned: Vec3,
+}
+
+impl Solid {
+    pub(crate) fn new(
+        rigid_world: &mut PhysicsWorld,
+        liquid_world: &mut LiquidWorld,
+        geometry: Geometry,
+        motion: Motion,
+        contact: Contact,
+        at: Isometry3d,
+    ) -> Self {
+        let builder = match motion {
+            Motion::Kinematic => RigidBodyBuilder::kinematic_position_based(),
+            Motion::Dynamic {
+                velocity,
+                angular_velocity,
+                ..
+            } => RigidBodyBuilder::dynamic()
+                .linvel(rigid(velocity))
+                .angvel(rigid(angular_velocity))
+                // Liquid below would not wake it.
+                .can_sleep(false)
+                .ccd_enabled(true),
+        };
+        let density = match motion {
+            Motion::Kinematic => 0.0,
+            Motion::Dynamic { density, .. } => density,
+        };
+        let collider = ColliderBuilder::new(geometry.collider.clone())
+            .density(density)
+            .friction(contact.friction)
+            .restitution(contact.restitution);
+        let (body, _) = rigid_world.insert(builder.pose(pose(at)), collider);
+        // Otherwise known only after its first step: until then nothing could push it.
+        if let Some(body) = rigid_world.bodies.get_mut(body) {
+            body.recompute_mass_properties_from_colliders(&rigid_world.colliders);
+        }
+        let boundary = Boundary::new(Vec::new(), InteractionGroups::all());
+        let mut solid = Self {
+            geometry,
+            motion,
+            body,
+            boundary: liquid_world.add_boundary(boundary),
+            samples: Vec::new(),
+            before: at,
+            at,
+            target: at,
+            velocity: Vec3::ZERO,
+            angular_velocity: Vec3::ZERO,
+            center: at.translation.into(),
+            feels: matches!(motion, Motion::Dynamic { .. }),
+            push: Vec3::ZERO,
+            turn: Vec3::ZERO,
+            pushed: Vec3::ZERO,
+            turned: Vec3::ZERO,
+        };
+        solid.read_body(rigid_world);
+        solid
+    }
+
+    pub(crate) fn is_dynamic(&self) -> bool {
+        matches!(self.motion, Motion::Dynamic { .. })
+    }
+
+    /// Samples the surface for particles of `radius`; false where that would be too many.
+    pub(crate) fn sample(&mut self, radius: f32) -> bool {
+        let Surface::Triangles(faces) = &self.geometry.surface else {
+            return true;
+        };
+        let samples = sampling::sample(
+            &sampling::inset(faces, sampling::DEPTH * radius),
+            2.0 * radius,
+        );
+        let is_sampled = samples.is_some();
+        self.samples = samples.unwrap_or_default();
+        is_sampled
+    }
+
+    /// Moves over to a new liquid world; false as [`Self::sample`].
+    pub(crate) fn enter(&mut self, liquid_world: &mut LiquidWorld) -> bool {
+        let boundary = Boundary::new(Vec::new(), InteractionGroups::all());
+        self.boundary = liquid_world.add_boundary(boundary);
+        self.sample(liquid_world.particle_radius())
+    }
+
+    /// At once, without a velocity.
+    pub(crate) fn jump(&mut self, rigid_world: &mut PhysicsWorld, at: Isometry3d) {
+        (self.before, self.at, self.target) = (at, at, at);
+        if let Some(body) = rigid_world.bodies.get_mut(self.body) {
+            body.set_position(pose(at), true);
+            if self.is_dynamic() {
+                body.set_linvel(rigid(Vec3::ZERO), true);
+                body.set_angvel(rigid(Vec3::ZERO), true);
+            }
+        }
+        self.read_body(rigid_world);
+    }
+
+    /// Takes over the state of a dynamic body.
+    pub(crate) fn read_body(&mut self, rigid_world: &PhysicsWorld) {
+        if let Some(body) = rigid_world.bodies.get(self.body)
+            && self.is_dynamic()
+        {
+            self.at = from_pose(body.position());
+            self.velocity = from_rigid(body.linvel());
+            self.angular_velocity = from_rigid(body.angvel());
+            self.center = from_rigid(body.center_of_mass());
+        }
+    }
+
+    /// Sets a kinematic solid's velocity such that it is at its target after `time` seconds.
+    pub(crate) fn head_for_target(&mut self, time: f32) {
+        if self.is_dynamic() {
+            return;
+        }
+        self.center = self.at.translation.into();
+        self.velocity = (Vec3::from(self.target.translation) - self.center) / time;
+        let turn = self.target.rotation * self.at.rotation.inverse();
+        // The short way round.
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        self.angular_velocity = turn.to_scaled_axis() / time;
+    }
+
+    /// Moves a kinematic solid on by `step` of the `left` seconds until it is at its target.
+    pub(crate) fn follow(&mut self, rigid_world: &mut PhysicsWorld, step: f32, left: f32) {
+        self.before = self.at;
+        if self.is_dynamic() || self.at == self.target {
+            return;
+        }
+        let share = (step / left).clamp(0.0, 1.0);
+        self.at = if share > 0.999 {
+            self.target
+        } else {
+            Isometry3d::new(
+                self.at.translation.lerp(self.target.translation, share),
+                self.at.rotation.slerp(self.target.rotation, share),
+            )
+        };
+        self.center = self.at.translation.into();
+        if let Some(body) = rigid_world.bodies.get_mut(self.body) {
+            body.set_next_kinematic_position(pose(self.at));
+        }
+    }
+
+    /// How much faster an impulse of 1 N s at a world-space `place` along `normal` makes it there:
+    /// 1/kg, 0 for what moves as it is told.
+    pub(crate) fn mobility(&self, rigid_world: &PhysicsWorld, place: Vec3, normal: Vec3) -> f32 {
+        let Some(body) = rigid_world
+            .bodies
+            .get(self.body)
+            .filter(|_| self.is_dynamic())
+        else {
+            return 0.0;
+        };
+        let mass = &body.mass_properties();
+        let lever = rigid((place - self.center).cross(normal));
+        let turning = mass.effective_world_inv_inertia * lever;
+        mass.effective_inv_mass.max_element() + lever.dot(turning)
+    }
+
+    /// Takes an impulse (N s) at a world-space `place`.
+    pub(crate) fn receive(&mut self, place: Vec3, impulse: Vec3) {
+        self.push += impulse;
+        self.turn += (place - self.center).cross(impulse);
+    }
+
+    /// Hands a body what the liquid has given it.
+    pub(crate) fn take_push(&mut self, rigid_world: &mut PhysicsWorld) {
+        let [push, turn] = [&mut self.push, &mut self.turn].map(core::mem::take);
+        if !push.is_finite() || !turn.is_finite() {
+            return;
+        }
+        self.pushed += push;
+        self.turned += turn;
+        if self.is_dynamic()
+            && let Some(body) = rigid_world.bodies.get_mut(self.body)
+        {
+            body.apply_impulse(rigid(push), true);
+            body.apply_torque_impulse(rigid(turn), true);
+        }
+    }
+
+    /// World-space velocity of the solid at a world-space `place`.
+    pub(crate) fn velocity_at(&self, place: Vec3) -> Vec3 {
+        self.velocity + self.angular_velocity.cross(place - self.center)
+    }
+}

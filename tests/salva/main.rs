@@ -1,0 +1,10 @@
+//! Live simulation against what is known in closed form, and that nothing leaks, whatever happens.
+
+#![cfg(feature = "salva")]
+
+mod cost;
+mod coupling;
+mod leaks;
+mod life;
+mod pool;
+mod rest;
