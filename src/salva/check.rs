@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaShape};
-use crate::complaints::AboutField;
+use crate::{complaints::AboutField, limits::Limited};
 
 /// Why something is not simulated as it is set.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -71,31 +71,17 @@ impl AboutField for SalvaError {
     }
 }
 
-/// A number, its range, and what stands in for one that is none.
-struct Field<'a>(&'static str, &'a mut f32, f32, f32, f32);
-
-impl Field<'_> {
-    fn check(&self) -> Result<(), SalvaError> {
-        let &Self(field, &mut value, min, max, _) = self;
-        // NaN is in no range.
-        if (min..=max).contains(&value) {
+impl SalvaError {
+    fn check(limited: &Limited) -> Result<(), Self> {
+        if limited.is_inside() {
             return Ok(());
         }
-        Err(SalvaError::Range {
-            field,
-            value,
-            min,
-            max,
+        Err(Self::Range {
+            field: limited.name,
+            value: *limited.value,
+            min: limited.min,
+            max: limited.max,
         })
-    }
-
-    fn clamp(self) {
-        let Self(_, value, min, max, absent) = self;
-        *value = if value.is_nan() {
-            absent
-        } else {
-            value.clamp(min, max)
-        };
     }
 }
 
@@ -113,14 +99,14 @@ fn or_zero(value: Vec3) -> Vec3 {
 
 impl SalvaFluid {
     #[rustfmt::skip]
-    fn fields(&mut self) -> [Field<'_>; 6] {
+    fn fields(&mut self) -> [Limited<'_>; 6] {
         [
-            Field("SalvaFluid::density", &mut self.density, 1.0, 1e5, Self::WATER.density),
-            Field("SalvaFluid::viscosity", &mut self.viscosity, 0.0, 10.0, Self::WATER.viscosity),
-            Field("SalvaFluid::wall_viscosity", &mut self.wall_viscosity, 0.0, 10.0, Self::WATER.wall_viscosity),
-            Field("SalvaFluid::drag", &mut self.drag, 0.0, 1e3, 0.0),
-            Field("SalvaFluid::surface_tension", &mut self.surface_tension, 0.0, 10.0, 0.0),
-            Field("SalvaFluid::adhesion", &mut self.adhesion, 0.0, 10.0, 0.0),
+            Limited::new("SalvaFluid::density", &mut self.density, [1.0, 1e5], Self::WATER.density),
+            Limited::new("SalvaFluid::viscosity", &mut self.viscosity, [0.0, 10.0], Self::WATER.viscosity),
+            Limited::new("SalvaFluid::wall_viscosity", &mut self.wall_viscosity, [0.0, 10.0], Self::WATER.wall_viscosity),
+            Limited::new("SalvaFluid::drag", &mut self.drag, [0.0, 1e3], 0.0),
+            Limited::new("SalvaFluid::surface_tension", &mut self.surface_tension, [0.0, 10.0], 0.0),
+            Limited::new("SalvaFluid::adhesion", &mut self.adhesion, [0.0, 10.0], 0.0),
         ]
     }
 
@@ -130,14 +116,14 @@ impl SalvaFluid {
     /// The first field that is out of its range, by name and value.
     pub fn validate(&self) -> Result<(), SalvaError> {
         let mut own = *self;
-        own.fields().iter().try_for_each(Field::check)?;
+        own.fields().iter().try_for_each(SalvaError::check)?;
         finite("SalvaFluid::velocity", self.velocity)
     }
 
     /// The nearest fluid that makes sense; what is not a number gives way to the default.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
-        own.fields().into_iter().for_each(Field::clamp);
+        own.fields().iter_mut().for_each(Limited::clamp);
         own.velocity = or_zero(own.velocity);
         own
     }
@@ -145,10 +131,10 @@ impl SalvaFluid {
 
 impl SalvaBoundary {
     #[rustfmt::skip]
-    fn fields(&mut self) -> [Field<'_>; 2] {
+    fn fields(&mut self) -> [Limited<'_>; 2] {
         [
-            Field("SalvaBoundary::friction", &mut self.friction, 0.0, 10.0, 0.5),
-            Field("SalvaBoundary::restitution", &mut self.restitution, 0.0, 1.0, 0.0),
+            Limited::new("SalvaBoundary::friction", &mut self.friction, [0.0, 10.0], 0.5),
+            Limited::new("SalvaBoundary::restitution", &mut self.restitution, [0.0, 1.0], 0.0),
         ]
     }
 
@@ -158,24 +144,24 @@ impl SalvaBoundary {
     /// The first field that is out of its range, by name and value.
     pub fn validate(&self) -> Result<(), SalvaError> {
         let mut own = *self;
-        own.fields().iter().try_for_each(Field::check)
+        own.fields().iter().try_for_each(SalvaError::check)
     }
 
     /// The nearest boundary that makes sense; what is not a number gives way to the default.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
-        own.fields().into_iter().for_each(Field::clamp);
+        own.fields().iter_mut().for_each(Limited::clamp);
         own
     }
 }
 
 impl SalvaBody {
     #[rustfmt::skip]
-    fn fields(&mut self) -> [Field<'_>; 3] {
+    fn fields(&mut self) -> [Limited<'_>; 3] {
         [
-            Field("SalvaBody::density", &mut self.density, 20.0, 1e5, 500.0),
-            Field("SalvaBody::friction", &mut self.friction, 0.0, 10.0, 0.5),
-            Field("SalvaBody::restitution", &mut self.restitution, 0.0, 1.0, 0.2),
+            Limited::new("SalvaBody::density", &mut self.density, [20.0, 1e5], 500.0),
+            Limited::new("SalvaBody::friction", &mut self.friction, [0.0, 10.0], 0.5),
+            Limited::new("SalvaBody::restitution", &mut self.restitution, [0.0, 1.0], 0.2),
         ]
     }
 
@@ -188,7 +174,7 @@ impl SalvaBody {
             return Err(SalvaError::BodyShape);
         }
         let mut own = *self;
-        own.fields().iter().try_for_each(Field::check)?;
+        own.fields().iter().try_for_each(SalvaError::check)?;
         finite("SalvaBody::velocity", self.velocity)?;
         finite("SalvaBody::angular_velocity", self.angular_velocity)
     }
@@ -197,7 +183,7 @@ impl SalvaBody {
     /// shape stays as it is.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
-        own.fields().into_iter().for_each(Field::clamp);
+        own.fields().iter_mut().for_each(Limited::clamp);
         own.velocity = or_zero(own.velocity);
         own.angular_velocity = or_zero(own.angular_velocity);
         own
