@@ -3,8 +3,11 @@
 use bevy::prelude::*;
 use thiserror::Error;
 
-use super::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaShape};
+use super::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaSettings, SalvaShape};
 use crate::{complaints::AboutField, limits::Limited};
+
+const MAX_SUBSTEPS: u32 = 16;
+const MAX_STEPS: u32 = 64;
 
 /// Why something is not simulated as it is set.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -190,6 +193,54 @@ impl SalvaBody {
     }
 }
 
+impl SalvaSettings {
+    #[rustfmt::skip]
+    fn fields(&mut self) -> [Limited<'_>; 2] {
+        let default = Self::default();
+        [
+            Limited::new("SalvaSettings::step", &mut self.step, [0.001, 0.05], default.step),
+            Limited::new("SalvaSettings::max_speed", &mut self.max_speed, [1.0, 1e4], default.max_speed),
+        ]
+    }
+
+    /// Checks every field against its documented range.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, by name and value.
+    pub fn validate(&self) -> Result<(), SalvaError> {
+        let mut own = self.clone();
+        own.fields().iter().try_for_each(SalvaError::check)?;
+        for (name, count, max) in [
+            (
+                "SalvaSettings::max_substeps",
+                self.max_substeps,
+                MAX_SUBSTEPS,
+            ),
+            ("SalvaSettings::max_steps", self.max_steps, MAX_STEPS),
+        ] {
+            let mut count = count as f32;
+            SalvaError::check(&Limited::new(name, &mut count, [1.0, max as f32], 1.0))?;
+        }
+        finite("SalvaSettings::gravity", self.gravity)?;
+        finite("SalvaSettings::low", self.low)?;
+        finite("SalvaSettings::high", self.high)
+    }
+
+    /// The nearest settings that make sense; what is not a number gives way to the default.
+    pub fn clamped(&self) -> Self {
+        let default = Self::default();
+        let finite = |value: Vec3, default: Vec3| if value.is_finite() { value } else { default };
+        let mut own = self.clone();
+        own.fields().iter_mut().for_each(Limited::clamp);
+        own.max_substeps = own.max_substeps.clamp(1, MAX_SUBSTEPS);
+        own.max_steps = own.max_steps.clamp(1, MAX_STEPS);
+        own.gravity = finite(own.gravity, default.gravity);
+        own.low = finite(own.low, default.low);
+        own.high = finite(own.high, default.high);
+        own
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,5 +283,33 @@ mod tests {
         }
         let endless = SalvaBody::new(SalvaShape::Plane, 500.0);
         assert_eq!(endless.validate(), Err(SalvaError::BodyShape));
+    }
+
+    #[test]
+    fn bad_settings_are_named_and_clamped() {
+        let default = SalvaSettings::default();
+        assert_eq!(default.validate(), Ok(()));
+        assert_eq!(default.clamped(), default);
+        let odd = |change: fn(&mut SalvaSettings)| {
+            let mut settings = SalvaSettings::default();
+            change(&mut settings);
+            settings
+        };
+        for (settings, name) in [
+            (odd(|it| it.step = 0.0), "step` is 0;"),
+            (odd(|it| it.max_speed = f32::NAN), "max_speed` is NaN;"),
+            (odd(|it| it.max_substeps = 0), "max_substeps` is 0;"),
+            (odd(|it| it.max_steps = 1000), "max_steps` is 1000;"),
+            (odd(|it| it.gravity.y = f32::NAN), "gravity"),
+            (odd(|it| it.low.x = f32::NEG_INFINITY), "low"),
+            (odd(|it| it.high.z = f32::INFINITY), "high"),
+        ] {
+            let error = settings.validate().unwrap_err().to_string();
+            assert!(
+                error.starts_with("`SalvaSettings::") && error.contains(name),
+                "{error}"
+            );
+            assert_eq!(settings.clamped().validate(), Ok(()), "{name}");
+        }
     }
 }

@@ -20,6 +20,7 @@ use super::{
     pace::Pace,
     world::{Command, Frame, Job, Report, World},
 };
+use crate::complaints::Complaints;
 
 /// A world that comes back from a job, unless it panicked.
 type Finished = Option<(Box<World>, Frame, Report)>;
@@ -163,8 +164,14 @@ pub(crate) fn advance(
     mut simulation: ResMut<Simulation>,
     settings: Res<SalvaSettings>,
     mut status: ResMut<SalvaStatus>,
+    mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
+    if settings.is_changed()
+        && let Some(error) = complaints.of(Entity::PLACEHOLDER, settings.validate())
+    {
+        warn!("{error}; the nearest that makes sense is taken");
+    }
     let settings = settings.clamped();
     let delta = if settings.paused {
         0.0

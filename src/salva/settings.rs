@@ -8,7 +8,7 @@ use crate::range::SettingRange;
 
 /// How [`SalvaPlugin`](super::SalvaPlugin) simulates. May be changed at any time.
 ///
-/// What is out of its range is moved to the nearest end.
+/// What is out of its range is said once, and moved to the nearest end.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
 pub struct SalvaSettings {
@@ -63,31 +63,6 @@ impl Default for SalvaSettings {
             max_speed: 100.0,
             low: Vec3::splat(-1000.0),
             high: Vec3::splat(1000.0),
-        }
-    }
-}
-
-impl SalvaSettings {
-    /// The nearest settings that make sense; what is not a number gives way to the default.
-    pub fn clamped(&self) -> Self {
-        let default = Self::default();
-        let within = |value: f32, low: f32, high: f32, default: f32| {
-            if value.is_nan() {
-                default
-            } else {
-                value.clamp(low, high)
-            }
-        };
-        let finite = |value: Vec3, default: Vec3| if value.is_finite() { value } else { default };
-        Self {
-            gravity: finite(self.gravity, default.gravity),
-            step: within(self.step, 0.001, 0.05, default.step),
-            max_substeps: self.max_substeps.clamp(1, 16),
-            max_steps: self.max_steps.clamp(1, 64),
-            max_speed: within(self.max_speed, 1.0, 1e4, default.max_speed),
-            low: finite(self.low, default.low),
-            high: finite(self.high, default.high),
-            ..self.clone()
         }
     }
 }
