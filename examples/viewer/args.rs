@@ -7,7 +7,11 @@ use bevy_fluid::{
     Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid,
     Search, Smoothing,
 };
-use clap::{Parser, ValueEnum, builder::PossibleValuesParser, error::ErrorKind};
+use clap::{
+    Parser, ValueEnum,
+    builder::{PossibleValuesParser, TypedValueParser},
+    error::ErrorKind,
+};
 
 /// Draws the particles of a file as a liquid.
 #[derive(Parser, Debug)]
@@ -49,8 +53,8 @@ pub(crate) struct Args {
     #[arg(long)]
     pub(crate) isotropic: bool,
     /// Show an intermediate result instead of the liquid
-    #[arg(long, value_enum)]
-    debug_view: Option<DebugViewArg>,
+    #[arg(long, value_parser = debug_view())]
+    pub(crate) debug_view: Option<FluidDebugView>,
     /// Frames to render; statistics are medians over them
     #[arg(long, default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) frames: u32,
@@ -84,18 +88,6 @@ enum SearchArg {
 enum FresnelArg {
     Exact,
     Schlick,
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug)]
-enum DebugViewArg {
-    BulkFront,
-    BulkBack,
-    SprayFront,
-    SprayBack,
-    Normals,
-    Interfaces,
-    Status,
-    Classes,
 }
 
 impl Args {
@@ -152,19 +144,31 @@ impl Args {
             ..default()
         }
     }
+}
 
-    pub(crate) fn debug_view(&self) -> Option<FluidDebugView> {
-        Some(match self.debug_view? {
-            DebugViewArg::BulkFront => FluidDebugView::BulkFront,
-            DebugViewArg::BulkBack => FluidDebugView::BulkBack,
-            DebugViewArg::SprayFront => FluidDebugView::SprayFront,
-            DebugViewArg::SprayBack => FluidDebugView::SprayBack,
-            DebugViewArg::Normals => FluidDebugView::Normals,
-            DebugViewArg::Interfaces => FluidDebugView::Interfaces,
-            DebugViewArg::Status => FluidDebugView::Status,
-            DebugViewArg::Classes => FluidDebugView::Classes,
-        })
+/// Every view of the crate, by its name in kebab case.
+fn debug_view() -> impl TypedValueParser<Value = FluidDebugView> {
+    let views = FluidDebugView::ALL.map(|view| (kebab(&format!("{view:?}")), view));
+    PossibleValuesParser::new(views.each_ref().map(|(name, _)| name.clone())).try_map(
+        move |chosen| {
+            let (_, view) = views
+                .iter()
+                .find(|(name, _)| *name == chosen)
+                .ok_or("no such view")?;
+            Ok::<_, &str>(*view)
+        },
+    )
+}
+
+fn kebab(camel: &str) -> String {
+    let mut kebab = String::new();
+    for letter in camel.chars() {
+        if letter.is_uppercase() && !kebab.is_empty() {
+            kebab.push('-');
+        }
+        kebab.extend(letter.to_lowercase());
     }
+    kebab
 }
 
 fn png(text: &str) -> Result<PathBuf, String> {

@@ -32,7 +32,7 @@ impl ScenePlugin {
             radius: args.radius,
             isotropic: args.isotropic,
             settings: args.settings(),
-            debug_view: args.debug_view(),
+            debug_view: args.debug_view,
             eye: args.eye,
             look_at: args.look_at,
             fov: args.fov.to_radians(),

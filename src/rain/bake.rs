@@ -22,8 +22,8 @@ use bevy::{
 use super::{
     densities::DENSITIES,
     drops::mean_speed,
-    settings::{Rain, RainStreaks},
-    streaks::{HEIGHT, MIP_LEVELS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
+    settings::{LONGEST_FRAME, Rain, RainStreaks},
+    streaks::{HEIGHT, MIP_LEVELS, STEPS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
 
 /// How much of the textures is drawn, 0 to 1.
@@ -88,11 +88,16 @@ pub(crate) fn bake_streaks(
     mut images: ResMut<Assets<Image>>,
     mut diagnostics: Diagnostics,
 ) {
-    // Whoever has no rain gets no textures.
-    if rains.is_empty() && streaks.running.is_none() {
+    // Whoever has no rain has no textures; while it does not rain, they are left as they are.
+    if rains.is_empty() {
+        streaks.ready = None;
+    }
+    let is_raining = rains.iter().any(|rain| rain.clamped().rate > 0.0);
+    if !is_raining && streaks.running.is_none() {
         return;
     }
-    let delta = time.delta_secs();
+    // A frame that takes longer than that says nothing of the next one.
+    let delta = time.delta_secs().min(LONGEST_FRAME);
     if delta > 0.0 {
         let frame = streaks.frame.unwrap_or(delta);
         streaks.frame = Some(frame + 0.1 * (delta - frame));
@@ -118,7 +123,7 @@ pub(crate) fn bake_streaks(
     } else {
         check_ready(&mut running.task)
     };
-    let done = running.done.load(Ordering::Relaxed) as f64 / VARIANTS as f64;
+    let done = running.done.load(Ordering::Relaxed) as f64 / f64::from(STEPS);
     diagnostics.add_measurement(&BAKE_PROGRESS, || done);
     let Some(baked) = finished else {
         streaks.running = Some(running);

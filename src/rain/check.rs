@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{
-    settings::{DEFAULT_EXPOSURE, Exposure, Rain, RainStreaks},
+    settings::{DEFAULT_EXPOSURE, Exposure, Rain, RainShelter, RainStreaks},
     streaks::{LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
 };
 use crate::{
@@ -30,6 +30,14 @@ pub enum RainError {
         /// Largest value allowed.
         max: f32,
     },
+    /// A shelter takes no place.
+    #[error("`RainShelter::half_size` is {half_size} at a scale of {scale}: there is no such box")]
+    Shelter {
+        /// Half of its sides in the entity's space.
+        half_size: Vec3,
+        /// That of its `GlobalTransform`.
+        scale: Vec3,
+    },
 }
 
 impl RainError {
@@ -49,8 +57,10 @@ impl RainError {
 
 impl AboutField for RainError {
     fn field(&self) -> &'static str {
-        let Self::Range { field, .. } = self;
-        field
+        match self {
+            Self::Range { field, .. } => field,
+            Self::Shelter { .. } => "half_size",
+        }
     }
 }
 
@@ -122,6 +132,23 @@ impl RainStreaks {
     }
 }
 
+impl RainShelter {
+    /// Checks that the box, placed so, is somewhere. It may be as flat as a sheet.
+    ///
+    /// # Errors
+    /// If its size is no number, or its transform cannot be undone.
+    pub fn validate(&self, transform: &GlobalTransform) -> Result<(), RainError> {
+        let determinant = transform.affine().matrix3.determinant();
+        if self.half_size.is_finite() && determinant.is_finite() && determinant.abs() > 1e-12 {
+            return Ok(());
+        }
+        Err(RainError::Shelter {
+            half_size: self.half_size,
+            scale: transform.scale(),
+        })
+    }
+}
+
 /// The exposure time nearest to `seconds` that makes sense.
 pub(crate) fn clamped_exposure(mut seconds: f32) -> f32 {
     limited_exposure(&mut seconds).clamp();
@@ -146,6 +173,24 @@ pub(crate) fn check_rain(
         && let Some(error) = complaints.of(Entity::PLACEHOLDER, streaks.validate())
     {
         warn!("{error}; the nearest value in range is taken");
+    }
+}
+
+pub(crate) fn check_shelters(
+    changed: Query<
+        (Entity, &RainShelter, &GlobalTransform),
+        Or<(Changed<RainShelter>, Changed<GlobalTransform>)>,
+    >,
+    mut gone: RemovedComponents<RainShelter>,
+    mut complaints: Local<Complaints>,
+) {
+    for entity in gone.read() {
+        complaints.forget(entity);
+    }
+    for (entity, shelter, transform) in &changed {
+        if let Some(error) = complaints.of(entity, shelter.validate(transform)) {
+            warn!("shelter {entity}: {error}; it keeps no rain off");
+        }
     }
 }
 

@@ -14,8 +14,9 @@ const REACH: f64 = 32.0;
 /// After so long drops one by one begin anew, so that 32-bit floats can follow them. Unit: s.
 const PERIOD: f64 = 256.0;
 
-/// The state of a camera's rain. It moves with `Time`, and so that a change of settings or a jump of
-/// the camera never makes drops jump that were in sight.
+/// The state of a camera's rain. It moves with `Time`, and so that neither a jump of the camera nor a
+/// change of settings makes drops jump at the camera's height. Where the wind changes, columns lean
+/// otherwise: the farther above or below the camera, the farther they swing.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainClock {
     /// How far the drops of the textures have fallen. Unit: m.
@@ -30,6 +31,8 @@ pub struct RainClock {
     pub(crate) anchor: DVec2,
     /// Unit: m.
     pub(crate) height: f64,
+    /// Before, there is no lean to change.
+    pub(crate) has_begun: bool,
 }
 
 impl RainClock {
@@ -42,6 +45,9 @@ impl RainClock {
             (self.seconds, self.drift) = default();
         }
         let lean = wind / speed.max(0.1) as f32;
+        if !self.has_begun {
+            (self.lean, self.has_begun) = (lean, true);
+        }
         if (camera_height - self.height).abs() > REACH && camera_height.is_finite() {
             self.anchor -= self.lean.as_dvec2() * (camera_height - self.height);
             self.height = camera_height;
@@ -122,6 +128,17 @@ mod tests {
                 assert!((place(&clock, height) - before).length() < 1e-4);
             }
         }
+    }
+
+    /// Cameras that began together stand among the same columns.
+    #[test]
+    fn a_cameras_height_places_no_column() {
+        let [low, high] = [2.0, 900.0].map(|height| {
+            let mut clock = RainClock::default();
+            clock.advance(0.1, vec2(5.0, -2.0), 5.0, height);
+            place(&clock, 5.0)
+        });
+        assert!((low - high).length() < 1e-4, "{low}, {high}");
     }
 
     #[test]

@@ -210,14 +210,6 @@ pub fn extinction(rate: f64) -> f64 {
     extinction_between(rate, 0.0, f64::INFINITY)
 }
 
-/// A diameter between `low` and `high`, distributed as the drops of rain of this rate are;
-/// `uniform` is a random number in 0..1. Units: mm/h, mm.
-pub fn sample_diameter(rate: f64, low: f64, high: f64, uniform: f64) -> f64 {
-    let slope = slope(rate);
-    let (a, b) = ((-slope * low).exp(), (-slope * high).exp());
-    (-(a + (b - a) * uniform).ln() / slope).clamp(low, high)
-}
-
 /// The rate at which [`mean_speed`] is taken; between rates it differs by a few per cent.
 const TYPICAL_RATE: f64 = 10.0;
 
@@ -237,9 +229,8 @@ pub fn mean_speed(law: DragLaw) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
 
-    /// Gunn and Kinzer as METHOD 7 cites them.
+    /// What Gunn and Kinzer measured, as it is cited elsewhere.
     const CITED: [(f64, f64); 10] = [
         (0.1, 0.27),
         (0.2, 0.72),
@@ -353,7 +344,7 @@ mod tests {
         }
     }
 
-    /// The totals of METHOD 7, from D = 0, > 0.5, > 1 and > 2 mm, and its β.
+    /// Totals from D = 0, > 0.5, > 1 and > 2 mm, and β.
     #[test]
     fn totals_are_those_of_the_literature() {
         for (rate, totals, beta) in [
@@ -397,25 +388,5 @@ mod tests {
             assert_eq!(count(rate, 0.0, f64::INFINITY), 0.0);
         }
         assert_eq!(extinction(0.0), 0.0);
-    }
-
-    #[test]
-    fn samples_are_distributed_as_the_counts() {
-        let (rate, low, high) = (10.0, 0.1, 6.0);
-        let mut random = Random::new(7);
-        let samples: Vec<f64> = (0..200_000)
-            .map(|_| sample_diameter(rate, low, high, random.next_f64()))
-            .collect();
-        let all = count(rate, low, high);
-        for edge in [0.2, 0.5, 1.0, 1.5, 2.0] {
-            let share = samples.iter().filter(|&&d| d > edge).count() as f64 / 200_000.0;
-            let expected = count(rate, edge, high) / all;
-            // Four standard deviations of the share.
-            let slack = 4.0 * (expected * (1.0 - expected) / 200_000.0).sqrt();
-            assert!(
-                (share - expected).abs() < slack,
-                "{edge} mm: {share}, {expected}"
-            );
-        }
     }
 }

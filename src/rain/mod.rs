@@ -24,15 +24,18 @@
 //! - Within 2 m drops are drawn one by one, each at its own place and speed: there streaks are told
 //!   apart. That is both truer and cheaper than many layers of small voxels.
 //! - A column of falling billboards is one standing billboard whose texture falls: all drops in one
-//!   draw of one layer.
+//!   draw of one layer. Beyond 2 m, drops of all sizes so fall at one speed, the mean.
+//! - Drops come as rain grows denser, and stay what they are: no change of the rate moves one.
 //! - Voxels are two metres wide, and from 6 m on twice as wide each time the distance doubles: the
 //!   cost grows with the logarithm of the distance.
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
 //!   depth, are mixed from one texel, and pixels vary over time as they should.
 //!
-//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs.
+//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs. Rain beyond the
+//! streaks is lit by what is all around alone.
 
 mod bake;
+pub(crate) mod births;
 mod check;
 mod clock;
 pub mod densities;
@@ -76,7 +79,12 @@ impl Plugin for RainPlugin {
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
             .add_systems(
                 PostUpdate,
-                (check::check_rain, bake::bake_streaks, clock::advance_clocks)
+                (
+                    check::check_rain,
+                    check::check_shelters,
+                    bake::bake_streaks,
+                    clock::advance_clocks,
+                )
                     .chain()
                     .after(TransformSystems::Propagate),
             )

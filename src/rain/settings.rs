@@ -8,18 +8,23 @@ use crate::range::SettingRange;
 /// Makes a camera see rain. Values that make no sense are named in the log
 /// once, and clamped.
 ///
-/// Cameras with equal settings that began together see the same drops.
+/// Cameras with equal settings that began together see the same drops, until the wind changes.
+///
+/// The scene's directional lights (the four brightest that share a render layer with the camera),
+/// point and spot lights (the 32 brightest at the camera) light it, and what is all around: the
+/// ambient light, and the camera's environment map or sky box.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Hdr, RainClock)]
 pub struct Rain {
     /// How much it rains. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame;
-    /// at 0 nothing is done.
+    /// at 0 nothing is done. Drops keep their sizes and speeds as others join them.
     #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic())]
     pub rate: f32,
     /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
     /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
-    /// grows with its logarithm beyond 2 m.
+    /// grows with its logarithm beyond 2 m. Straight up or down, streaks are points: from 8 m on they
+    /// fade like what is beyond the distance.
     #[reflect(@SettingRange::new(1.0, 100.0).unit("m").logarithmic())]
     pub distance: f32,
     /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
@@ -88,7 +93,7 @@ pub struct RainStreaks {
     pub exposure: Exposure,
     /// How fast drops fall. Default [`DragLaw::GunnKinzer`].
     pub law: DragLaw,
-    /// Other seeds, other drops. Default 0.
+    /// Other seeds, other drops. Any number, default 0.
     pub seed: u64,
 }
 
@@ -110,6 +115,9 @@ pub enum Exposure {
 /// Before frames have taken any time. Unit: s.
 pub(crate) const DEFAULT_EXPOSURE: f32 = 1.0 / 60.0;
 
+/// Exposures that follow the frames' length are of this at most. Unit: s.
+pub(crate) const LONGEST_FRAME: f32 = 1.0 / 30.0;
+
 impl Exposure {
     /// The exposure to draw with when frames take `frame` seconds (if that is known) and textures
     /// of `current` are there (if any are).
@@ -118,7 +126,7 @@ impl Exposure {
             Self::Seconds(seconds) => clamped_exposure(seconds),
             Self::FrameTime => {
                 let wanted = frame.or(current).unwrap_or(DEFAULT_EXPOSURE);
-                let wanted = wanted.clamp(1.0 / 240.0, 1.0 / 30.0);
+                let wanted = wanted.clamp(1.0 / 240.0, LONGEST_FRAME);
                 match current {
                     Some(current) if (0.8..=1.25).contains(&(wanted / current)) => current,
                     _ => wanted,
@@ -135,7 +143,8 @@ impl Exposure {
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Transform)]
 pub struct RainShelter {
-    /// Half of the box's sides in the entity's space. Default 1 each.
+    /// Half of the box's sides in the entity's space. Unit: m at a scale of 1, range 0..=100 and
+    /// more, default 1 each.
     #[reflect(@SettingRange::new(0.0, 100.0).unit("m").open())]
     pub half_size: Vec3,
 }

@@ -2,22 +2,27 @@
 //!
 //! Seen from the side in parallel projection. One layer per variant; the four channels of a layer are
 //! four densities of drops, each holding the drops of the one before it and more. Layers tile: what
-//! leaves one on one side enters on the other, and streaks across the upper and lower border are the
-//! same in all variants, so that any two may stand on another.
+//! leaves one on one side enters on the other, and streaks across a border are the same in all
+//! variants, so that any two may stand beside or on another.
 //!
 //! A drop of diameter D that falls at v covers a point of its way for D/v on average times π/4 for
 //! its roundness, of an exposure T: opacity π/4 · D/(vT), over a width of D and a length of vT. That
 //! is an area of π/4 · D², the drop's cross section, whatever the exposure; it is spread over the
 //! texels exactly.
 
-use core::f64::consts::{FRAC_PI_4, PI};
+use core::{
+    array,
+    f64::consts::{FRAC_PI_4, PI},
+};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
 use super::{
+    births::diameter_of_birth,
+    check::clamped_exposure,
     densities::{BAKED_RATES, DENSITIES},
-    drops::{DragLaw, LARGEST, SMALLEST, count, sample_diameter, slope},
+    drops::{DragLaw, LARGEST, SMALLEST, count},
 };
 use crate::random::Random;
 
@@ -86,7 +91,19 @@ struct Streak {
     density: usize,
 }
 
-/// Draws all textures, in parallel; `done` counts finished layers.
+impl Streak {
+    fn crosses_a_border(&self) -> bool {
+        // A texel beside the border is blended with the one across it.
+        let reach = self.radius + 1.0 / WIDTH as f64;
+        self.y + self.length > 1.0 || self.x < reach || self.x > 1.0 - reach
+    }
+}
+
+/// How many times [`bake`] counts.
+pub const STEPS: u32 = 2 * VARIANTS as u32;
+
+/// Draws all textures, in parallel; `done` counts to [`STEPS`]. An exposure that makes no sense is
+/// clamped.
 pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
     let variants = sample_streaks(input);
     let mut extinction = [0.0; DENSITIES];
@@ -95,7 +112,14 @@ pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
             *sum += PI * streak.radius.powi(2) / VARIANTS as f64;
         }
     }
-    let layers: Vec<Vec<Texel>> = variants.par_iter().map(|streaks| draw(streaks)).collect();
+    let layers: Vec<Vec<Texel>> = variants
+        .par_iter()
+        .map(|streaks| {
+            let layer = draw(streaks);
+            done.fetch_add(1, Ordering::Relaxed);
+            layer
+        })
+        .collect();
     // Rain denser than the densest is seldom: most of the range is for what is there.
     let scale = layers
         .iter()
@@ -121,14 +145,17 @@ pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
 /// The drops of each variant: a random number of them in each, as many in all together as there are
 /// on average.
 fn sample_streaks(input: &StreakInput) -> [Vec<Streak>; VARIANTS] {
-    let exposure = f64::from(input.exposure.clamp(SHORTEST_EXPOSURE, LONGEST_EXPOSURE));
+    let exposure = f64::from(clamped_exposure(input.exposure));
     let mut random = Random::new(input.seed);
     let mut variants: [Vec<Streak>; VARIANTS] = Default::default();
-    let (mut before, mut rate_before) = (0.0, None);
+    let mut before = 0.0;
     for (density, rate) in BAKED_RATES.into_iter().enumerate() {
-        let count = count(rate, SMALLEST, LARGEST);
+        let count = count(rate, SMALLEST, f64::INFINITY);
         for _ in 0..random.round((count - before) * VARIANTS as f64) {
-            let diameter = more_drops(rate, rate_before, &mut random);
+            let there = before + (count - before) * random.next_f64();
+            let diameter = diameter_of_birth(there, array::from_fn(|_| random.next_f64()));
+            // Larger ones break up.
+            let diameter = diameter.min(LARGEST);
             let streak = Streak {
                 x: random.next_f64(),
                 y: random.next_f64(),
@@ -136,28 +163,16 @@ fn sample_streaks(input: &StreakInput) -> [Vec<Streak>; VARIANTS] {
                 radius: 0.5e-3 * diameter,
                 density,
             };
-            // Across the border all variants are alike: one decides for all.
-            match (random.below(VARIANTS), streak.y + streak.length > 1.0) {
+            // Across a border all variants are alike: one decides for all.
+            match (random.below(VARIANTS), streak.crosses_a_border()) {
                 (variant, false) => variants[variant].push(streak),
                 (0, true) => variants.iter_mut().for_each(|streaks| streaks.push(streak)),
                 (_, true) => {}
             }
         }
-        (before, rate_before) = (count, Some(rate));
+        before = count;
     }
     variants
-}
-
-/// The diameter of a drop that rain of a rate has and that of a lower rate has not.
-fn more_drops(rate: f64, lower: Option<f64>, random: &mut Random) -> f64 {
-    loop {
-        let diameter = sample_diameter(rate, SMALLEST, LARGEST, random.next_f64());
-        // n(lower) / n(rate): the share of such drops that were there before.
-        let there = lower.map_or(0.0, |lower| ((slope(rate) - slope(lower)) * diameter).exp());
-        if random.next_f64() >= there {
-            return diameter;
-        }
-    }
 }
 
 fn draw(streaks: &[Streak]) -> Vec<Texel> {

@@ -19,7 +19,10 @@ use bevy::{
 use fluid_stage::{headless_app, read_buffer, settle};
 
 use super::gpu_types::GpuBody;
-use crate::FluidPlugin;
+use crate::{
+    FluidPlugin,
+    rain::{RainPlugin, births::diameter_of_birth},
+};
 
 /// Four numbers in and four out, as often as there are inputs.
 struct Formula {
@@ -32,7 +35,7 @@ impl Formula {
     /// `expression` is a `vec4<f32>` of `in`, with what is imported from `path`.
     fn new(imports: &str, expression: &str) -> Self {
         let source = format!(
-            "#import bevy_fluid::render::{imports}
+            "#import bevy_fluid::{imports}
             @group(1) @binding(8) var<storage, read> inputs: array<vec4<f32>>;
             @group(1) @binding(9) var<storage, read_write> outputs: array<vec4<f32>>;
             @compute @workgroup_size(1)
@@ -42,7 +45,7 @@ impl Formula {
             }}"
         );
         let mut app = headless_app(UVec2::splat(16), |app| {
-            app.add_plugins(FluidPlugin::default());
+            app.add_plugins((FluidPlugin::default(), RainPlugin::default()));
         })
         .unwrap();
         let mut shaders = app.world_mut().resource_mut::<Assets<Shader>>();
@@ -133,7 +136,7 @@ impl Formula {
 #[test]
 fn h29_an_interface_at_and_about_the_critical_angle() {
     let formula = Formula::new(
-        "optics::meet",
+        "render::optics::meet",
         "vec4(meet(in.xyz, vec3(0.0, 0.0, 1.0), in.w).reflectance,
               meet(in.xyz, vec3(0.0, 0.0, 1.0), in.w).refracted)",
     );
@@ -180,7 +183,7 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
 #[test]
 fn h34_h50_the_medium_equals_f64_on_the_gpu() {
     let formula = Formula::new(
-        "bindings::body\n#import bevy_fluid::render::medium::transmitted",
+        "render::bindings::body\n#import bevy_fluid::render::medium::transmitted",
         "vec4(transmitted(body.extinction, in.x), 1.0)",
     );
     let distances = [0.0, 1e-6, 1e-3, 1.0, 1e6, f32::MAX, f32::INFINITY];
@@ -204,7 +207,7 @@ fn h34_h50_the_medium_equals_f64_on_the_gpu() {
 #[test]
 fn normals_survive_their_code_and_what_is_no_direction_is_z() {
     let formula = Formula::new(
-        "functions::{decode_normal, encode_normal, unit_or_z}",
+        "render::functions::{decode_normal, encode_normal, unit_or_z}",
         "vec4(decode_normal(encode_normal(unit_or_z(in.xyz))), 1.0)",
     );
     let directions = [
@@ -226,5 +229,29 @@ fn normals_survive_their_code_and_what_is_no_direction_is_z() {
         };
         let got = vec3(gx, gy, gz).as_dvec3();
         assert!(got.distance(wanted) < 1e-5, "({x}, {y}, {z}): {got}");
+    }
+}
+
+/// In thin rain and in the thickest, for common drops and for rare ones.
+#[test]
+fn drops_come_in_the_same_sizes_as_in_f64() {
+    let formula = Formula::new(
+        "rain::draw::births::diameter_of_birth",
+        "vec4(diameter_of_birth(in.x, in.yzw))",
+    );
+    let inputs: Vec<[f32; 4]> = [0.0, 0.01, 30.0, 600.0, 2400.0, 6000.0]
+        .into_iter()
+        .flat_map(|drops| {
+            [[0.5, 0.3, 0.9], [1e-4, 0.99, 0.01], [0.999, 0.0, 1.0]]
+                .map(|[a, b, c]| [drops, a, b, c])
+        })
+        .collect();
+    for (input, [found, ..]) in inputs.iter().zip(formula.run(default(), &inputs)) {
+        let [drops, a, b, c] = input.map(f64::from);
+        let wanted = diameter_of_birth(drops, [a, b, c]);
+        assert!(
+            (f64::from(found) / wanted - 1.0).abs() < 1e-4,
+            "{input:?}: {found} mm, not {wanted}"
+        );
     }
 }

@@ -134,10 +134,98 @@ fn it_is_dry_under_a_shelter() {
     place.translation.y = -60.0;
     settle(&mut app).unwrap();
     assert_eq!(mean(&radiance(&app)), wet);
-    // One that has no volume is said to be none.
-    app.world_mut().entity_mut(roof).insert(RainShelter {
-        half_size: Vec3::NAN,
-    });
-    settle(&mut app).unwrap();
-    assert_eq!(mean(&radiance(&app)), wet);
+}
+
+/// A shelter without volume, over everything in sight, is said to be none, and is none.
+#[test]
+fn a_shelter_without_volume_keeps_no_rain_off() {
+    let mut app = show_plain(white_rain(20.0, 10.0));
+    let wet = mean(&radiance(&app));
+    let above = Transform::from_xyz(0.0, 60.0, 0.0);
+    for (half_size, scale) in [(Vec3::NAN, Vec3::ONE), (Vec3::splat(30.0), Vec3::ZERO)] {
+        let world = app.world_mut();
+        let bundle = (RainShelter { half_size }, above.with_scale(scale));
+        // Other tests' apps say much of entities with small numbers.
+        let roof = (0..2000).map(|_| world.spawn_empty().id()).last().unwrap();
+        world.entity_mut(roof).insert(bundle);
+        settle(&mut app).unwrap();
+        assert_eq!(mean(&radiance(&app)), wet);
+        assert_eq!(log::said(&format!("shelter {roof}")), 1);
+    }
+}
+
+/// The dry air under a roof leans as the rain does.
+#[test]
+fn wind_blows_rain_under_a_roof() {
+    // A roof that covers the left half of what is seen at its middle, five metres above it.
+    let wet = |wind: f32| {
+        let rain = Rain {
+            wind: vec2(wind, 0.0),
+            ..white_rain(50.0, 6.0)
+        };
+        let mut app = show_plain(rain);
+        let roof = (
+            RainShelter {
+                half_size: vec3(50.0, 0.5, 50.0),
+            },
+            Transform::from_translation(VIEW.pose.translation + vec3(-50.0, 5.5, 0.0)),
+        );
+        app.world_mut().spawn(roof);
+        settle(&mut app).unwrap();
+        let data = radiance(&app);
+        let (left, right) = common::pixels(data.size)
+            .map(|at| (at.x < 80, f64::from(data.f16x4(at.x, at.y)[1])))
+            .fold((0.0, 0.0), |(left, right), (is_left, light)| {
+                if is_left {
+                    (left + light, right)
+                } else {
+                    (left, right + light)
+                }
+            });
+        (left, right)
+    };
+    let (left, right) = wet(0.0);
+    assert!(left < 0.02 * right && right > 1.0, "{left}, {right}");
+    // From the right it is blown in, from the left it is kept off farther.
+    let (blown_in, _) = wet(-5.0);
+    let (_, kept_off) = wet(5.0);
+    println!("{left:.2} {right:.2} {blown_in:.2} {kept_off:.2}");
+    assert!(blown_in > 0.2 * right, "{blown_in}, {right}");
+    assert!(kept_off < 0.8 * right, "{kept_off}, {right}");
+}
+
+/// Distances are metres whatever the camera's scale.
+#[test]
+fn a_scaled_camera_sees_the_same() {
+    for method in [RainMethod::Streaks, RainMethod::PerDrop] {
+        let rain = Rain {
+            method,
+            extent: 100.0,
+            ..white_rain(50.0, 4.0)
+        };
+        let look = |scale: f32| {
+            let mut app = show_plain(rain);
+            let camera = only::<Camera3d>(&mut app);
+            let wall = spawn_black(app.world_mut(), AlphaMode::Opaque);
+            let world = app.world_mut();
+            world.get_mut::<Transform>(camera).unwrap().scale = Vec3::splat(scale);
+            // As near a near plane, in metres.
+            if let Projection::Perspective(lens) =
+                &mut *world.get_mut::<Projection>(camera).unwrap()
+            {
+                lens.near /= scale;
+            }
+            let mut place = world.get_mut::<Transform>(wall).unwrap();
+            place.translation += VIEW.pose.translation;
+            settle(&mut app).unwrap();
+            mean(&radiance(&app))
+        };
+        let (one, large, small) = (look(1.0), look(4.0), look(0.25));
+        for other in [large, small] {
+            assert!(
+                (other / one - 1.0).abs() < 1e-3,
+                "{method:?}: {one}, {other}"
+            );
+        }
+    }
 }

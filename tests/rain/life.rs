@@ -40,10 +40,8 @@ fn a_game_without_rain_pays_nothing() {
         );
     };
     nothing(&app);
-    assert!(
-        !app.world().resource::<BakedStreaks>().is_settled(),
-        "nothing is baked"
-    );
+    let baked = |app: &App| app.world().resource::<BakedStreaks>().exposure().is_some();
+    assert!(!baked(&app));
     assert!(picture(&mut app) == plain);
     // Rain of no rate is none.
     for rate in [0.0, -1.0, f32::NAN] {
@@ -53,35 +51,86 @@ fn a_game_without_rain_pays_nothing() {
             .insert(Rain::falling(rate));
         settle(&mut app).unwrap();
         nothing(&app);
+        assert!(!baked(&app));
         assert!(picture(&mut app) == plain, "{rate}");
     }
     let camera = only::<Camera3d>(&mut app);
     app.world_mut().entity_mut(camera).insert(Rain::HEAVY);
     settle(&mut app).unwrap();
-    assert!(picture(&mut app) != plain);
+    assert!(picture(&mut app) != plain && baked(&app));
     app.world_mut().entity_mut(camera).remove::<Rain>();
     settle(&mut app).unwrap();
     assert_eq!(quads(&app), None);
+    assert!(!baked(&app));
     assert!(picture(&mut app) == plain);
 }
 
 #[test]
 fn the_same_seed_rains_the_same_and_another_does_not() {
-    let rain = || {
-        let mut app = show_plain(white_rain(20.0, 10.0));
-        set_time_step(&mut app, Duration::from_millis(16));
-        step(&mut app, 5);
-        app
-    };
-    let (a, mut b) = (rain(), rain());
-    let first = radiance(&a).bytes;
-    assert!(first == radiance(&b).bytes);
-    step(&mut b, 1);
-    assert!(first != radiance(&b).bytes, "nothing falls");
-    b.world_mut().resource_mut::<RainStreaks>().seed = 1;
-    set_time_step(&mut b, Duration::ZERO);
-    settle(&mut b).unwrap();
-    assert!(first != radiance(&b).bytes);
+    for method in [RainMethod::Streaks, RainMethod::PerDrop] {
+        let rain = |seed: u64| {
+            let mut app = show_plain(Rain {
+                method,
+                ..white_rain(20.0, 4.0)
+            });
+            app.world_mut().resource_mut::<RainStreaks>().seed = seed;
+            set_time_step(&mut app, Duration::from_millis(16));
+            step(&mut app, 5);
+            app
+        };
+        let (a, mut b) = (rain(0), rain(0));
+        let first = radiance(&a).bytes;
+        assert!(first == radiance(&b).bytes);
+        step(&mut b, 1);
+        assert!(first != radiance(&b).bytes, "nothing falls");
+        for other in [1, 1 << 40] {
+            assert!(first != radiance(&rain(other)).bytes, "{method:?}, {other}");
+        }
+    }
+}
+
+/// As a server or a unit test has it.
+#[test]
+fn without_a_renderer_rain_comes_and_goes() {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        AssetPlugin::default(),
+        TransformPlugin,
+        ImagePlugin::default(),
+    ))
+    .init_asset::<Shader>()
+    .add_plugins(RainPlugin::default());
+    let [first, second] = [(); 2].map(|()| {
+        app.world_mut()
+            .spawn((Transform::default(), Rain::HEAVY))
+            .id()
+    });
+    app.update();
+    app.world_mut().entity_mut(first).remove::<Rain>();
+    app.world_mut().despawn(second);
+    app.update();
+}
+
+/// One frame that takes long draws no textures anew.
+#[test]
+fn a_hitch_changes_no_exposure() {
+    let mut app = show_plain(white_rain(20.0, 4.0));
+    app.world_mut().resource_mut::<RainStreaks>().exposure = Exposure::FrameTime;
+    let exposure = |app: &App| app.world().resource::<BakedStreaks>().exposure();
+    set_time_step(&mut app, Duration::from_secs_f64(1.0 / 60.0));
+    step(&mut app, 60);
+    let before = exposure(&app);
+    assert!((before.unwrap() - 1.0 / 60.0).abs() < 1e-4, "{before:?}");
+    set_time_step(&mut app, Duration::from_millis(250));
+    step(&mut app, 1);
+    set_time_step(&mut app, Duration::from_secs_f64(1.0 / 60.0));
+    step(&mut app, 3);
+    assert_eq!(exposure(&app), before);
+    // Many do.
+    set_time_step(&mut app, Duration::from_millis(250));
+    step(&mut app, 60);
+    assert!(exposure(&app).unwrap() > 0.025);
 }
 
 #[test]
@@ -183,13 +232,37 @@ fn two_cameras_see_the_same_rain() {
         },
         ..default()
     };
-    let mut app = show_plain(white_rain(50.0, 10.0));
-    let first = only::<Camera3d>(&mut app);
-    app.world_mut().entity_mut(first).insert(half(0));
-    app.world_mut()
-        .spawn(camera(&VIEW, white_rain(50.0, 10.0)))
-        .insert(half(80));
+    let rain = Rain {
+        wind: vec2(4.0, -3.0),
+        ..white_rain(50.0, 10.0)
+    };
+    let mut app = new_app(VIEW.size, |app| {
+        app.add_plugins(RainPlugin {
+            synchronous_bake: true,
+        })
+        .insert_resource(GlobalAmbientLight {
+            brightness: 1.0,
+            ..default()
+        });
+        // One of them has been elsewhere in the meantime.
+        for (x, height) in [(0, 0.0), (80, 300.0)] {
+            let mut second = app.world_mut().spawn(camera(&VIEW, rain));
+            second.insert(half(x));
+            let mut place = second.get_mut::<Transform>().unwrap();
+            place.translation.y += height;
+        }
+    });
     settle(&mut app).unwrap();
+    set_time_step(&mut app, Duration::from_millis(16));
+    step(&mut app, 5);
+    let world = app.world_mut();
+    for mut place in world
+        .query_filtered::<&mut Transform, With<Camera3d>>()
+        .iter_mut(world)
+    {
+        *place = VIEW.pose;
+    }
+    step(&mut app, 2);
     let image = picture(&mut app);
     let (mut lit, mut differ) = (0, 0);
     for y in 0..120 {
@@ -205,6 +278,7 @@ fn two_cameras_see_the_same_rain() {
 #[test]
 fn sizes_and_samples_may_change() {
     let mut app = show_plain(white_rain(20.0, 5.0));
+    let whole = mean(&radiance(&app));
     let camera = only::<Camera3d>(&mut app);
     for (size, msaa) in [
         (uvec2(1, 1), Msaa::Off),
@@ -215,7 +289,14 @@ fn sizes_and_samples_may_change() {
         resize(&mut app, size).unwrap();
         app.world_mut().entity_mut(camera).insert(msaa);
         settle(&mut app).unwrap();
-        assert!(validation_errors(&app).is_empty());
+        let data = radiance(&app);
+        assert_eq!(data.size, size);
+        // A pixel of one sees what all of them see.
+        let opacity = mean(&data);
+        assert!(
+            (opacity / whole - 1.0).abs() < 0.25,
+            "{size}: {opacity}, {whole}"
+        );
     }
 }
 

@@ -2,6 +2,15 @@
 
 use super::*;
 
+/// All of the rain that it sees is seen from the same side.
+const NARROW: View = View {
+    lens: Lens::Perspective {
+        fov: 0.05,
+        near: 0.05,
+    },
+    ..VIEW
+};
+
 fn lamp(intensity: f32, at: Vec3) -> impl Bundle {
     (
         SpotLight {
@@ -82,14 +91,7 @@ fn light_falls_off_with_the_square_of_the_distance() {
 /// The phase function that shaders have is the one that is documented.
 #[test]
 fn light_goes_where_the_phase_function_says() {
-    let view = View {
-        lens: Lens::Perspective {
-            fov: 0.05,
-            near: 0.05,
-        },
-        ..VIEW
-    };
-    let mut app = show(&view, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
+    let mut app = show(&NARROW, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
     let opacity = mean(&radiance(&app));
     app.world_mut()
         .resource_mut::<GlobalAmbientLight>()
@@ -115,16 +117,8 @@ fn light_goes_where_the_phase_function_says() {
 }
 
 /// Rain in the light of one lamp, 200 m above, over the same in that of a point light without end.
-/// All of it sees the lamp from the same side.
 fn against_a_point_light(lamp: impl Bundle, rotation: Quat) -> (f64, Option<usize>) {
-    let view = View {
-        lens: Lens::Perspective {
-            fov: 0.05,
-            near: 0.05,
-        },
-        ..VIEW
-    };
-    let mut app = show(&view, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
+    let mut app = show(&NARROW, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
     no_surroundings(&mut app);
     let place = Transform::from_translation(VIEW.pose.translation + 200.0 * Vec3::Y);
     let whole = PointLight {
@@ -190,4 +184,84 @@ fn lamps_light_what_is_in_their_range() {
         );
         assert_eq!(drawn == Some(0), range < 200.0, "{range}: {drawn:?}");
     }
+}
+
+/// A sun on another render layer than the camera's does not light its rain; of many suns the four
+/// brightest do.
+#[test]
+fn suns_count_as_the_camera_sees_them() {
+    let mut app = show_plain(white_rain(20.0, 10.0));
+    no_surroundings(&mut app);
+    let sun = |illuminance: f32| {
+        (
+            DirectionalLight {
+                illuminance,
+                ..default()
+            },
+            Transform::default().looking_to(vec3(0.1, -1.0, 0.4), Vec3::Y),
+        )
+    };
+    let elsewhere = app
+        .world_mut()
+        .spawn((sun(10.0), RenderLayers::layer(3)))
+        .id();
+    settle(&mut app).unwrap();
+    assert_eq!(mean(&radiance(&app)), 0.0);
+    app.world_mut().despawn(elsewhere);
+    for illuminance in [1.0, 2.0, 1.0, 1.0, 8.0, 4.0, 16.0] {
+        app.world_mut().spawn(sun(illuminance));
+    }
+    settle(&mut app).unwrap();
+    let many = mean(&radiance(&app));
+    let world = app.world_mut();
+    let suns: Vec<Entity> = world
+        .query_filtered::<Entity, With<DirectionalLight>>()
+        .iter(world)
+        .collect();
+    suns.into_iter().for_each(|sun| {
+        world.despawn(sun);
+    });
+    world.spawn(sun(30.0));
+    settle(&mut app).unwrap();
+    let one = mean(&radiance(&app));
+    assert!(
+        one > 0.0 && (many / one - 1.0).abs() < 1e-2,
+        "{many}, {one}"
+    );
+}
+
+/// Parallel rays see far to the side: a lamp there lights the rain around it.
+#[test]
+fn a_lamp_at_the_side_of_an_orthographic_view_lights_its_rain() {
+    let view = View {
+        lens: Lens::Orthographic {
+            height: 60.0,
+            near: 0.0,
+            far: 100.0,
+        },
+        ..VIEW
+    };
+    let mut app = show(&view, white_rain(50.0, 10.0), 1.0 / 60.0, |_| {});
+    no_surroundings(&mut app);
+    let lamp = app
+        .world_mut()
+        .spawn((
+            PointLight {
+                intensity: 1e5,
+                range: 6.0,
+                ..default()
+            },
+            Transform::from_translation(VIEW.pose.translation + vec3(30.0, 0.0, -5.0)),
+        ))
+        .id();
+    settle(&mut app).unwrap();
+    let aside = mean(&radiance(&app));
+    let mut place = app.world_mut().get_mut::<Transform>(lamp).unwrap();
+    place.translation.x -= 30.0;
+    settle(&mut app).unwrap();
+    let middle = mean(&radiance(&app));
+    assert!(
+        (aside / middle - 1.0).abs() < 0.3 && middle > 0.0,
+        "{aside}, {middle}"
+    );
 }

@@ -12,7 +12,7 @@ mod opacity;
 use core::time::Duration;
 
 use bevy::{
-    camera::{Exposure as CameraExposure, Viewport},
+    camera::{Exposure as CameraExposure, Viewport, visibility::RenderLayers},
     core_pipeline::tonemapping::DebandDither,
     prelude::*,
     render::{RenderApp, view::ViewTarget},
@@ -134,14 +134,19 @@ fn mean(data: &TextureData) -> f64 {
     sum / count
 }
 
-/// Optical depth of the rain in view, over `looks` directions and moments.
+/// Optical depth of the rain in view, over `looks` level directions and moments.
 fn optical_depth(app: &mut App, looks: u32) -> f64 {
+    optical_depth_at(app, 0.0, looks)
+}
+
+/// The same for a view that looks up by `pitch`.
+fn optical_depth_at(app: &mut App, pitch: f32, looks: u32) -> f64 {
     set_time_step(app, Duration::from_secs_f64(0.37));
     let camera = only::<Camera3d>(app);
     let mut sum = 0.0;
     for look in 0..looks {
         let mut transform = app.world_mut().get_mut::<Transform>(camera).unwrap();
-        transform.rotation = Quat::from_rotation_y(2.4 * look as f32);
+        transform.rotation = Quat::from_euler(EulerRot::YXZ, 2.4 * look as f32, pitch, 0.0);
         transform.translation += vec3(1.7, 0.9, 2.3);
         step(app, 1);
         sum += mean(&radiance(app));

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// METHOD 7: the mean transmittance over a length L is e^(−βL), whatever the exposure. It is the
+/// The mean transmittance over a length L is e^(−βL), whatever the exposure. It is the
 /// exponent that is compared: transmittances are all near 1.
 #[test]
 fn rain_takes_as_much_light_as_its_drops() {
@@ -96,6 +96,82 @@ fn wind_slants_the_streaks_of_near_drops() {
     );
     println!("{right:.2}, {left:.2}");
     assert!(right > 1.3 && left < 1.0 / 1.3, "{right}, {left}");
+}
+
+/// Views from above, as of isometric games, and views along the fall: whatever is streaks there and
+/// what is haze, there is as much rain in the way.
+#[test]
+fn steep_views_see_as_much_rain() {
+    let orthographic = Lens::Orthographic {
+        height: 8.0,
+        near: 0.0,
+        far: 100.0,
+    };
+    for lens in [orthographic, VIEW.lens] {
+        let view = View { lens, ..VIEW };
+        let mut app = show(&view, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
+        for pitch in [-0.5, -0.8, 1.2, -1.45, core::f32::consts::FRAC_PI_2] {
+            let ratio = optical_depth_at(&mut app, pitch, 30) / (extinction(20.0) * 10.0);
+            println!("{lens:?}, {pitch}: {ratio:.4}");
+            assert!((ratio - 1.0).abs() < 0.06, "{lens:?}, {pitch}: {ratio}");
+        }
+    }
+    // And wherever in the picture: its upper and its lower quarter as much as its middle.
+    let view = View {
+        lens: orthographic,
+        ..VIEW
+    };
+    let mut app = show(&view, white_rain(20.0, 10.0), 1.0 / 60.0, |_| {});
+    let camera = only::<Camera3d>(&mut app);
+    set_time_step(&mut app, Duration::from_secs_f64(0.37));
+    let mut sums = [0.0; 4];
+    for look in 0..60 {
+        let mut transform = app.world_mut().get_mut::<Transform>(camera).unwrap();
+        transform.rotation = Quat::from_euler(EulerRot::YXZ, 2.4 * look as f32, -0.8, 0.0);
+        step(&mut app, 1);
+        let data = radiance(&app);
+        for at in common::pixels(data.size) {
+            sums[4 * at.y as usize / data.size.y as usize] += f64::from(data.f16x4(at.x, at.y)[1]);
+        }
+    }
+    let all = sums.iter().sum::<f64>() / 4.0;
+    println!("{:.3?}", sums.map(|sum| sum / all));
+    assert!(
+        sums.iter().all(|sum| (sum / all - 1.0).abs() < 0.1),
+        "{sums:?}"
+    );
+}
+
+/// Drops one by one stay where and what they are while others join them, after any time.
+#[test]
+fn a_denser_rain_holds_the_drops_of_a_thinner_one() {
+    let rain = |rate| Rain {
+        method: RainMethod::PerDrop,
+        ..white_rain(rate, 4.0)
+    };
+    let mut app = show_plain(rain(2.0));
+    set_time_step(&mut app, Duration::from_secs_f64(47.3));
+    step(&mut app, 3);
+    set_time_step(&mut app, Duration::ZERO);
+    let look = |app: &mut App, rate| {
+        set_rain(app, rain(rate));
+        let data = radiance(app);
+        let pixels = common::pixels(data.size).map(|at| data.f16x4(at.x, at.y)[1]);
+        pixels.collect::<Vec<f32>>()
+    };
+    let mut thinner = look(&mut app, 2.0);
+    for rate in [2.5, 10.0, 80.0] {
+        let denser = look(&mut app, rate);
+        // What covers a drop takes of its light no more than its own opacity.
+        let lost = thinner
+            .iter()
+            .zip(&denser)
+            .filter(|(a, b)| **b < 0.98 * **a);
+        assert_eq!(lost.count(), 0, "{rate} mm/h");
+        let sum = |picture: &[f32]| picture.iter().sum::<f32>();
+        assert!(sum(&denser) > 1.05 * sum(&thinner) && sum(&thinner) > 1.0);
+        thinner = denser;
+    }
 }
 
 /// As the rate rises, drops fade in: there is as much rain as the rate says at any time, and no drop

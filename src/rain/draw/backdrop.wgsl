@@ -1,6 +1,8 @@
-// What rain beyond the streaks takes from the scene behind it, and what it sends.
+// What rain beyond the streaks takes from the scene behind it, and what it sends; and what of it is
+// seen so steeply that drops are points.
 
 #import bevy_fluid::rain::draw::common::{over, rain, scene_view_depth, surroundings, view}
+#import bevy_fluid::rain::draw::types::STEEPEST
 #import bevy_render::view::frag_coord_to_ndc
 
 @vertex
@@ -22,8 +24,16 @@ fn view_ray(pixel: vec2<f32>) -> vec3<f32> {
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let ray = view_ray(position.xy);
     let scene = scene_view_depth(position.xy) / max(dot(ray, rain.forward), 1e-4);
-    let way = clamp(scene, rain.distance, max(rain.extent, rain.distance)) - rain.distance;
-    let opacity = 1.0 - exp(-rain.extinction * way);
+    let beyond = clamp(scene, rain.distance, max(rain.extent, rain.distance)) - rain.distance;
+    // Of the way before that: where drops are drawn one by one, and where billboards are.
+    let along = dot(ray, rain.axis);
+    let across = sqrt(max(1.0 - along * along, 0.0));
+    let before = min(scene, rain.distance);
+    let near = min(rain.drops_end / max(across, 1e-6), before);
+    let part = min(across / STEEPEST, 1.0);
+    let billboards = (before - near) * select(floor(part), part, rain.perspective == 1u);
+    let drawn = min(near, rain.drops_reach) + billboards;
+    let opacity = 1.0 - exp(-rain.extinction * (beyond + max(before - drawn, 0.0)));
     if opacity <= 0.0 {
         discard;
     }

@@ -4,7 +4,7 @@
     clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
     scene_view_depth, streak_sampler, streaks, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::{STREAK_TEXELS, VARIANTS, Voxel}
+#import bevy_fluid::rain::draw::types::{STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -21,8 +21,6 @@ struct Varying {
 
 // Opacities below this change no pixel.
 const LEAST: f32 = 1e-6;
-// Seen along the fall, streaks are points: their opacity grows no more from here on.
-const STEEPEST: f32 = 0.15;
 
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
@@ -69,7 +67,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // The part of the voxel that is before the scene, within the level's range and in sight.
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
-    let end = min(min(level.end, rain.distance * max(across, STEEPEST)), scene);
+    let end = min(min(level.end, rain.distance * across), scene);
     let part = min(distance + 0.5 * level.size, end) - max(distance - 0.5 * level.size, level.start);
     if part <= 0.0 {
         discard;

@@ -39,7 +39,8 @@ fn ray_to(position: vec3<f32>) -> vec3<f32> {
     return select(rain.forward, normalize(position), rain.perspective == 1u);
 }
 
-// View depth (positive forward) of the opaque scene and of liquids.
+// View depth (positive forward) of the opaque scene and of liquids, in metres also where the camera
+// is scaled.
 fn scene_view_depth(pixel: vec2<f32>) -> f32 {
     let depth = textureLoad(scene_depth, vec2<i32>(pixel), 0);
     if rain.perspective == 1u && depth <= 0.0 {
@@ -47,13 +48,14 @@ fn scene_view_depth(pixel: vec2<f32>) -> f32 {
     }
     let ndc = frag_coord_to_ndc(vec4(pixel, depth, 1.0), view.main_pass_viewport);
     let position = view.view_from_clip * vec4(ndc, 1.0);
-    return -position.z / position.w;
+    return -position.z / position.w * rain.view_scale.y;
 }
 
 // How much a pixel spans across the view.
 fn metres_per_pixel(view_depth: f32) -> f32 {
     let inverse_focal = 2.0 / (view.main_pass_viewport.w * abs(view.clip_from_view[1][1]));
-    return inverse_focal * select(1.0, max(view_depth, 1e-4), rain.perspective == 1u);
+    let depth = select(1.0, max(view_depth, 1e-4) / rain.view_scale.y, rain.perspective == 1u);
+    return inverse_focal * depth * rain.view_scale.x;
 }
 
 fn environment(direction: vec3<f32>) -> vec3<f32> {

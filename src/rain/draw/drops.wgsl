@@ -1,11 +1,12 @@
 // Every drop by itself, as an antialiased streak: near the eye, where drops are told apart, and
 // everywhere as the truth that billboards are measured against.
 
+#import bevy_fluid::rain::draw::births::diameter_of_birth
 #import bevy_fluid::rain::draw::common::{
     PI, clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
     scene_view_depth, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::{SPEED_STEP, Voxel}
+#import bevy_fluid::rain::draw::types::{LARGEST, SPEED_STEP, Voxel}
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -37,13 +38,6 @@ fn uniform_of(bits: u32) -> f32 {
     return f32(bits >> 8u) / 16777216.0;
 }
 
-// Twin of `sample_diameter` in `drops.rs`. Unit: mm.
-fn sample_diameter(random: f32) -> f32 {
-    let low = exp(-rain.slope * rain.smallest);
-    let high = exp(-rain.slope * rain.largest);
-    return clamp(-log(low + (high - low) * random) / rain.slope, rain.smallest, rain.largest);
-}
-
 // m/s.
 fn speed(diameter: f32) -> f32 {
     let at = diameter / SPEED_STEP;
@@ -61,8 +55,14 @@ fn nothing() -> Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
-    let slot = hash(cell.hash ^ hash(index / 4u));
-    let diameter = sample_diameter(uniform_of(slot));
+    let slot = hash(cell.hash ^ hash((index / 4u) ^ hash(rain.seed)));
+    let volume = cell.size * cell.size * cell.size;
+    // The first slots are for the drops that come first as rain grows denser.
+    let birth = (f32(index / 4u) + uniform_of(hash(slot ^ 0x85157AF5u))) / volume;
+    let random = vec3(
+        uniform_of(slot), uniform_of(hash(slot ^ 0x3C6EF372u)), uniform_of(hash(slot ^ 0xDAA66D2Bu)),
+    );
+    let diameter = min(diameter_of_birth(birth, random), LARGEST);
     let falls = speed(diameter);
     let start = uniform_of(hash(slot ^ 0x68E31DA4u));
     // A copy of the drop stands in every cell of its way; which one is in this cell by now?
@@ -72,7 +72,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let height = fract(left);
     let copy = hash(slot ^ hash(u32(row + i32(floor(fallen)) - i32(floor(left)))));
     // The last one is there as often as it takes for the mean.
-    if f32(index / 4u) + uniform_of(hash(copy ^ 0x1B56C4E9u)) >= rain.drops * cell.size * cell.size * cell.size {
+    if f32(index / 4u) + uniform_of(hash(copy ^ 0x1B56C4E9u)) >= rain.drops * volume {
         return nothing();
     }
     // Columns of cells lean as drops of mean speed fall. What is faster or slower drifts through
@@ -94,7 +94,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let is_perspective = rain.perspective == 1u;
     let far = select(view_depth, length(middle), is_perspective);
     let across = select(view_depth * sqrt(max(1.0 - along_view * along_view, 0.0)), length(off), is_perspective);
-    let is_far = far > rain.distance || across > rain.drops_end;
+    let is_far = far > rain.drops_reach || across > rain.drops_end;
     // Nearer than the near plane, or behind.
     if a.z > a.w || b.z > b.w || a.w <= 0.0 || b.w <= 0.0 || is_far || is_sheltered(middle) {
         return nothing();

@@ -119,11 +119,8 @@ pub(crate) fn extract_shelters(
 ) {
     extracted.0.clear();
     for (shelter, transform) in &shelters {
-        let matrix = transform.affine().matrix3;
-        if shelter.half_size.is_finite() && matrix.determinant().abs() > 1e-12 {
+        if shelter.validate(transform).is_ok() {
             extracted.0.push((*transform, shelter.half_size.abs()));
-        } else {
-            bevy::utils::once!(warn!("a `RainShelter` without volume keeps no rain off"));
         }
     }
 }

@@ -62,15 +62,15 @@ pub(crate) struct GpuRain {
     pub(crate) fallen_tiles: i32,
     pub(crate) fallen: f32,
     pub(crate) drops_end: f32,
+    pub(crate) drops_reach: f32,
     pub(crate) drops: f32,
     pub(crate) exposure: f32,
     pub(crate) seconds: f32,
     pub(crate) wind: Vec2,
     pub(crate) drift: Vec2,
     pub(crate) mean_speed: f32,
-    pub(crate) slope: f32,
-    pub(crate) smallest: f32,
-    pub(crate) largest: f32,
+    pub(crate) seed: u32,
+    pub(crate) view_scale: Vec2,
     pub(crate) speeds: [Vec4; SPEED_VECTORS],
     pub(crate) levels: [GpuRainLevel; LEVEL_COUNT],
     pub(crate) lights: [GpuRainLight; MAX_LIGHTS],
@@ -78,7 +78,7 @@ pub(crate) struct GpuRain {
     pub(crate) shelters: [GpuShelter; MAX_SHELTERS],
 }
 
-/// A voxel with rain in it: `Quad` of `billboards.wgsl`, `Cell` of `drops.wgsl`.
+/// A voxel with rain in it, of streaks or of drops: `Voxel` of `types.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct GpuQuad {

@@ -24,6 +24,14 @@ const fn level(size: f32, start: f32, end: f32) -> Level {
 /// apart, and drops of a size fall at a speed of their own. Unit: m.
 pub(crate) const NEAR: f32 = 2.0;
 
+/// So far along the fall, for there is no end of [`NEAR`]: seen along it, drops are points, which fade
+/// (see `backdrop.wgsl`). Unit: m.
+pub(crate) const NEAR_REACH: f32 = 8.0;
+
+/// Sine of the angle between a ray and the fall: nearer to it, streaks are points, and their opacity
+/// grows no more. Parallel rays so steep meet no billboards at all.
+pub(crate) const STEEPEST: f32 = 0.15;
+
 /// Voxels of streaks, from [`NEAR`] on, or from the eye on where all rays are parallel. A voxel shows
 /// its drops as if all were at its middle.
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
@@ -47,6 +55,8 @@ pub(crate) struct Eye {
     pub(crate) position: DVec3,
     pub(crate) forward: Vec3,
     pub(crate) perspective: bool,
+    /// Depth of the near plane. Unit: m.
+    pub(crate) near: f32,
     /// Planes with normals to the inside, relative to the eye.
     planes: [Vec4; 4],
     /// A box around what is seen up to the distance, relative to the eye.
@@ -55,16 +65,17 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    /// `None` for matrices that make no sense.
+    /// Sees rain that falls along `axis`, up to the distance. `None` for matrices that make no sense.
     pub(crate) fn new(
         world_from_view: &GlobalTransform,
         clip_from_view: &Mat4,
         distance: f32,
+        axis: Vec3,
     ) -> Option<Self> {
-        let rotation = world_from_view.rotation();
-        let clip_from_relative = *clip_from_view * Mat4::from_quat(rotation.inverse());
+        let relative_from_view = Mat3::from(world_from_view.affine().matrix3);
+        let clip_from_relative = *clip_from_view * Mat4::from_mat3(relative_from_view.inverse());
         let relative_from_clip = clip_from_relative.inverse();
-        let forward = rotation * Vec3::NEG_Z;
+        let forward = relative_from_view.mul_vec3(Vec3::NEG_Z).normalize();
         let perspective = clip_from_view.w_axis.w != 1.0;
         let row = |i| clip_from_relative.row(i);
         let planes = [
@@ -74,12 +85,22 @@ impl Eye {
             row(3) - row(1),
         ]
         .map(|plane| plane / plane.truncate().length());
+        let depth = if perspective {
+            distance
+        } else {
+            // Voxels across the end count in part, however steep the way there is.
+            let steepness = forward.cross(axis).length().max(STEEPEST);
+            let last = LEVELS.iter().rfind(|level| level.start < distance);
+            distance + 0.5 * last.map_or(0.0, |level| level.size) / steepness
+        };
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut near_depth = 0.0;
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             // Two points of the ray, both at finite distances in every projection.
             let near = relative_from_clip.project_point3(vec3(x, y, 1.0));
             let way = relative_from_clip.project_point3(vec3(x, y, 0.5)) - near;
-            let far = near + way * ((distance - near.dot(forward)) / way.dot(forward));
+            let far = near + way * ((depth - near.dot(forward)) / way.dot(forward));
+            near_depth = near.dot(forward);
             low = low.min(near).min(far);
             high = high.max(near).max(far);
         }
@@ -93,6 +114,7 @@ impl Eye {
             position: world_from_view.translation().as_dvec3(),
             forward,
             perspective,
+            near: near_depth,
             planes,
             low,
             high,
@@ -109,6 +131,26 @@ impl Eye {
             .iter()
             .all(|plane| plane.truncate().dot(center) + plane.w >= -radius)
             && center.dot(self.forward) >= -radius
+    }
+
+    /// Whether what is around a place comes near what is seen.
+    pub(crate) fn is_reached_from(&self, place: Vec3, range: f32) -> bool {
+        place.distance_squared(place.clamp(self.low, self.high)) < range * range
+    }
+
+    /// The least sine of the angle between a ray of the view and the fall.
+    pub(crate) fn steepest(&self, axis: Vec3) -> f32 {
+        let along = self.forward.dot(axis).abs().min(1.0);
+        let widest = self.planes.iter().fold(0.0, |widest: f32, plane| {
+            widest.max(plane.truncate().dot(self.forward).clamp(0.0, 1.0).asin())
+        });
+        // Corners are farther off than borders.
+        let spread = if self.perspective {
+            2.0_f32.sqrt() * widest
+        } else {
+            0.0
+        };
+        (along.acos() - spread).max(0.0).sin()
     }
 }
 
@@ -160,9 +202,15 @@ pub(crate) fn add_voxels(
         let size = f64::from(level.size);
         let cells =
             |low: f64, high: f64| (low / size).floor() as i64..=(high / size).floor() as i64;
+        // Around the eye, voxels are those in its distance.
+        let around = if eye.perspective {
+            distance
+        } else {
+            f32::INFINITY
+        };
         let heights = cells(
-            eye.position.y + f64::from(eye.low.y - content.longest()),
-            eye.position.y + f64::from(eye.high.y),
+            eye.position.y + f64::from(eye.low.y.max(-around) - content.longest()),
+            eye.position.y + f64::from(eye.high.y.min(around)),
         );
         let end = level.end.min(distance);
         for y in heights {
@@ -198,6 +246,9 @@ pub(crate) fn add_voxels(
                     else {
                         continue;
                     };
+                    if quads.len() == MAX_QUADS {
+                        return true;
+                    }
                     let base = center_y - 0.5 * size;
                     let mut quad = GpuQuad {
                         center,
@@ -213,10 +264,6 @@ pub(crate) fn add_voxels(
                         quads.push(quad);
                     }
                 }
-            }
-            if quads.len() > MAX_QUADS {
-                quads.truncate(MAX_QUADS);
-                return true;
             }
         }
     }
@@ -236,8 +283,24 @@ fn radius_in(
     let half = 0.5 * level.size;
     let across = |way: Vec3| way - way.dot(axis) * axis;
     let (radius, nearest, farthest) = if !eye.perspective {
-        let radius = center.dot(across(eye.forward).try_normalize()?);
-        (radius, radius - half, radius + half)
+        // Parallel rays begin at the view's plane.
+        let depth = center.dot(eye.forward);
+        match content {
+            Content::Streaks => {
+                let steepness = across(eye.forward).length();
+                if steepness < STEEPEST {
+                    return None;
+                }
+                let radius = depth * steepness;
+                // The billboard leans against the view's plane.
+                let reach = half * (1.0 + steepness / axis.y);
+                (radius, radius - reach, radius + reach)
+            }
+            Content::Drops(_) => {
+                let reach = content.reach(level.size, axis);
+                (depth, depth - reach, depth + reach)
+            }
+        }
     } else if center.length() > distance + level.size {
         return None;
     } else {

@@ -5,7 +5,10 @@ use bevy::{
     prelude::*,
 };
 
-use super::gpu_types::{GpuRainLight, GpuRainSun, MAX_LIGHTS, MAX_SUNS};
+use super::{
+    gpu_types::{GpuRainLight, GpuRainSun, MAX_LIGHTS, MAX_SUNS},
+    lattice::Eye,
+};
 
 /// Point and spot lights near a view, the brightest first.
 #[derive(Default)]
@@ -22,18 +25,20 @@ struct NearLight {
 }
 
 impl NearLights {
-    /// The lights that reach within `distance` of the eye; the first [`MAX_LIGHTS`] count.
+    /// The lights that reach what is seen; the first [`MAX_LIGHTS`] count.
     pub(crate) fn gather<'a>(
         &mut self,
         lights: impl Iterator<Item = &'a ExtractedPointLight>,
-        eye: Vec3,
-        distance: f32,
+        place: Vec3,
+        eye: &Eye,
     ) {
         self.lights.clear();
         self.lights.extend(lights.filter_map(|light| {
-            let position = light.transform.translation() - eye;
+            let position = light.transform.translation() - place;
             let away = position.length();
-            let seen = away - light.range < distance && light.range > 0.0 && light.intensity > 0.0;
+            let seen = eye.is_reached_from(position, light.range)
+                && light.range > 0.0
+                && light.intensity > 0.0;
             seen.then(|| {
                 let gpu = gpu_light(light, position);
                 NearLight {
@@ -102,18 +107,25 @@ fn gpu_light(light: &ExtractedPointLight, position: Vec3) -> GpuRainLight {
     }
 }
 
-/// The first [`MAX_SUNS`] directional lights, and how many they are.
+/// The brightest [`MAX_SUNS`] directional lights, and how many they are.
 pub(crate) fn suns<'a>(
     lights: impl Iterator<Item = &'a ExtractedDirectionalLight>,
 ) -> ([GpuRainSun; MAX_SUNS], u32) {
     let mut suns = [GpuRainSun::default(); MAX_SUNS];
     let mut count = 0;
-    for (slot, light) in suns.iter_mut().zip(lights) {
-        *slot = GpuRainSun {
+    for light in lights {
+        let sun = GpuRainSun {
             direction: light.transform.forward().into(),
             illuminance: light.color.to_vec3() * light.illuminance,
         };
-        count += 1;
+        // In its place among the others; the last one drops out.
+        let brightness = |sun: &GpuRainSun| sun.illuminance.max_element();
+        let at = suns[..count].partition_point(|other| brightness(other) >= brightness(&sun));
+        if at < MAX_SUNS {
+            count = (count + 1).min(MAX_SUNS);
+            suns[at..count].rotate_right(1);
+            suns[at] = sun;
+        }
     }
-    (suns, count)
+    (suns, count as u32)
 }

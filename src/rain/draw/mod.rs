@@ -39,12 +39,15 @@ pub(crate) struct RainDrawPlugin;
 impl Plugin for RainDrawPlugin {
     fn build(&self, app: &mut App) {
         load_shader_library!(app, "types.wgsl");
+        load_shader_library!(app, "births.wgsl");
         load_shader_library!(app, "common.wgsl");
         embedded_asset!(app, "backdrop.wgsl");
         embedded_asset!(app, "billboards.wgsl");
         embedded_asset!(app, "drops.wgsl");
-        app.add_plugins(SyncComponentPlugin::<Rain>::default());
-
+        // What it syncs needs a renderer, if only to be despawned.
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_plugins(SyncComponentPlugin::<Rain>::default());
+        }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };

@@ -1,6 +1,7 @@
 //! From the view to what its rain needs this frame.
 
 use bevy::{
+    camera::visibility::RenderLayers,
     core_pipeline::core_3d::{CORE_3D_DEPTH_FORMAT, Transparent3d, TransparentSortingInfo3d},
     pbr::{ExtractedDirectionalLight, ExtractedPointLight},
     prelude::*,
@@ -23,10 +24,10 @@ use super::{
     command::DrawRain,
     extract::{EnvironmentMap, ExtractedRain, Shelters},
     gpu_types::{GpuQuad, GpuRain},
-    lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels},
+    lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels, fall_axis},
     lights::{NearLights, suns},
     pipeline::{RainKey, RainPart, RainPipeline, RainScene},
-    view::{MAX_SHELLS, RainBindGroup, RainQuads, levels},
+    view::{MAX_SHELLS, Plan, RainBindGroup, RainQuads},
 };
 
 /// What all views share.
@@ -59,9 +60,15 @@ const MAX_DROPS: u32 = 6000;
 
 /// Chooses the voxels and has them drawn among the transparent things.
 pub(crate) fn queue_rain(
-    mut views: Query<(&ExtractedView, &ExtractedRain, &mut RainQuads, &Msaa)>,
+    mut views: Query<(
+        &ExtractedView,
+        &ExtractedRain,
+        &mut RainQuads,
+        &Msaa,
+        Option<&RenderLayers>,
+    )>,
     lamps: Query<&ExtractedPointLight>,
-    sun_lights: Query<&ExtractedDirectionalLight>,
+    sun_lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
     mut shelters: ResMut<Shelters>,
     mut buffers: ResMut<RainBuffers>,
     mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
@@ -74,21 +81,29 @@ pub(crate) fn queue_rain(
     let buffers = &mut *buffers;
     buffers.uniforms.clear();
     let draw = functions.read().id::<DrawRain>();
-    for (view, extracted, mut quads, msaa) in &mut views {
+    for (view, extracted, mut quads, msaa, layers) in &mut views {
         let quads = &mut *quads;
         quads.instances.clear();
         quads.shells.clear();
         quads.cells = 0..0;
         let rain = &extracted.rain;
-        let eye = Eye::new(&view.world_from_view, &view.clip_from_view, rain.distance);
+        let axis = fall_axis(extracted.clock.lean);
+        let eye = Eye::new(
+            &view.world_from_view,
+            &view.clip_from_view,
+            rain.distance,
+            axis,
+        );
         let (Some(eye), Some(phase)) = (eye, phases.get_mut(&view.retained_view_entity)) else {
             continue;
         };
         let place = view.world_from_view.translation();
-        let mut gpu = GpuRain::new(extracted, &eye);
+        let mut gpu = GpuRain::new(extracted, &view.world_from_view, &eye, axis);
         gpu.shelter(&mut shelters, place);
-        (gpu.suns, gpu.sun_count) = suns(sun_lights.iter());
-        buffers.near.gather(lamps.iter(), place, rain.distance);
+        let layers = layers.unwrap_or_default();
+        let suns_in_view = sun_lights.iter().filter(|(_, of)| of.intersects(layers));
+        (gpu.suns, gpu.sun_count) = suns(suns_in_view.map(|(light, _)| light));
+        buffers.near.gather(lamps.iter(), place, &eye);
         gpu.lights = buffers.near.gpu();
         if let Some(map) = environment_of(extracted, &images) {
             // Cubemaps are left-handed.
@@ -104,7 +119,6 @@ pub(crate) fn queue_rain(
             || gpu.sun_count > 0
             || rain.brightness <= 0.0;
         let near = &buffers.near;
-        let axis = gpu.axis;
         let keep = |content: Content| {
             move |quad: &mut GpuQuad| {
                 if !near.is_empty() {
@@ -113,10 +127,10 @@ pub(crate) fn queue_rain(
                 always || quad.lamps != 0
             }
         };
-        let (levels, drops_end) = levels(rain.method, &eye);
+        let plan = Plan::new(rain.method, rain.distance, &eye);
         let instances = quads.instances.values_mut();
         let clock = &extracted.clock;
-        let mut too_many = levels.is_some_and(|levels| {
+        let mut too_many = plan.levels.is_some_and(|levels| {
             let content = Content::Streaks;
             let keep = keep(content);
             add_voxels(
@@ -131,8 +145,8 @@ pub(crate) fn queue_rain(
         });
         let voxels = quads.instances.len();
         quads.cut_shells(rain.distance, phase.items.is_empty());
-        if drops_end > 0.0 {
-            let cells = if levels.is_some() {
+        if plan.drops_end > 0.0 {
+            let cells = if plan.levels.is_some() {
                 NEAR_CELLS
             } else {
                 ALL_CELLS
@@ -146,7 +160,7 @@ pub(crate) fn queue_rain(
                 clock,
                 &[cells],
                 content,
-                rain.distance,
+                plan.drops_reach,
                 keep,
             );
             let drops = gpu.drops * cells.size.powi(3);
@@ -204,7 +218,7 @@ pub(crate) fn queue_rain(
                 indexed: false,
             });
         };
-        if rain.extent > rain.distance {
+        if rain.extent > rain.distance || plan.leaves_some(eye.steepest(axis)) {
             add(BACKDROP, rain.distance + 1.0, backdrop);
         }
         for (shell_index, shell) in quads.shells.iter().enumerate() {
@@ -212,7 +226,7 @@ pub(crate) fn queue_rain(
         }
         if !quads.cells.is_empty() && quads.drop_indices > 0 {
             // At the middle of the air that they fill.
-            add(DROPS, 0.75 * drops_end.min(rain.distance), drops);
+            add(DROPS, 0.75 * plan.drops_end.min(rain.distance), drops);
         }
     }
 }

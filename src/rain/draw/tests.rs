@@ -18,11 +18,13 @@ use fluid_stage::{headless_app, settle, step};
 use super::{
     RainQuads,
     gpu_types::GpuQuad,
+    lattice::STEEPEST,
     pipeline::{RainKey, RainPart, RainPipeline, RainScene},
     prepare::{prepare_rain_bind_groups, queue_rain},
 };
 use crate::rain::{
     Rain, RainPlugin, RainShelter,
+    drops::{INTERCEPT, LARGEST, SMALLEST},
     streaks::{HEIGHT, VARIANTS, WIDTH},
 };
 
@@ -71,12 +73,16 @@ fn every_part_of_rain_is_made() {
 /// What WGSL repeats of Rust's numbers.
 #[test]
 fn shaders_know_the_same_numbers() {
-    let types = include_str!("types.wgsl");
-    for line in [
-        format!("const VARIANTS: u32 = {VARIANTS}u;"),
-        format!("vec2({WIDTH}.0, {HEIGHT}.0)"),
+    let (types, births) = (include_str!("types.wgsl"), include_str!("births.wgsl"));
+    for (shader, line) in [
+        (types, format!("const VARIANTS: u32 = {VARIANTS}u;")),
+        (types, format!("vec2({WIDTH}.0, {HEIGHT}.0)")),
+        (types, format!("const LARGEST: f32 = {LARGEST:.1};")),
+        (types, format!("const STEEPEST: f32 = {STEEPEST};")),
+        (births, format!("const SMALLEST: f32 = {SMALLEST};")),
+        (births, format!("const INTERCEPT: f32 = {INTERCEPT:.1};")),
     ] {
-        assert!(types.contains(&line), "{line}");
+        assert!(shader.contains(&line), "{line}");
     }
     assert_eq!(size_of::<GpuQuad>(), 40);
 }

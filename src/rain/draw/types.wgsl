@@ -58,8 +58,9 @@ struct GpuRain {
     // How far the drops of the textures have fallen: whole metres, and the rest.
     fallen_tiles: i32,
     fallen: f32,
-    // Drops one by one: up to which distance across the fall there are any.
+    // Drops one by one: up to which distance across the fall there are any, and up to which at all.
     drops_end: f32,
+    drops_reach: f32,
     // How many there are in a cubic metre.
     drops: f32,
     exposure: f32,
@@ -69,10 +70,10 @@ struct GpuRain {
     drift: vec2<f32>,
     // At which columns of drops lean.
     mean_speed: f32,
-    // 1/mm.
-    slope: f32,
-    smallest: f32,
-    largest: f32,
+    // Other seeds, other drops.
+    seed: u32,
+    // How long the view's y and z axes are in the world.
+    view_scale: vec2<f32>,
     // Terminal speeds by diameter, in steps of SPEED_STEP.
     speeds: array<vec4<f32>, 16>,
     levels: array<GpuRainLevel, 4>,
@@ -86,6 +87,11 @@ const VARIANTS: u32 = 8u;
 const STREAK_TEXELS: vec2<f32> = vec2(512.0, 512.0);
 // mm.
 const SPEED_STEP: f32 = 0.1;
+// Larger drops break up. Unit: mm.
+const LARGEST: f32 = 6.0;
+// Sine of the angle between a ray and the fall: nearer to it, streaks are points, and their opacity
+// grows no more.
+const STEEPEST: f32 = 0.15;
 
 // A voxel of rain as it comes to the vertex shaders, of streaks and of drops alike.
 struct Voxel {

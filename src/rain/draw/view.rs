@@ -15,11 +15,11 @@ use super::{
     gpu_types::{
         GpuQuad, GpuRain, GpuRainLevel, GpuShelter, LEVEL_COUNT, MAX_SHELTERS, SPEED_VECTORS,
     },
-    lattice::{Eye, LEVELS, Level, NEAR, fall_axis},
+    lattice::{Eye, LEVELS, Level, NEAR, NEAR_REACH, STEEPEST},
 };
 use crate::rain::{
     densities::density_weights,
-    drops::{LARGEST, SMALLEST, count, extinction, slope},
+    drops::{SMALLEST, count, extinction},
     settings::RainMethod,
 };
 
@@ -117,31 +117,65 @@ impl Default for RainQuads {
     }
 }
 
-/// The levels of voxels of streaks, and up to which distance drops are drawn one by one instead.
-pub(crate) fn levels(method: RainMethod, eye: &Eye) -> (Option<[Level; LEVEL_COUNT]>, f32) {
-    match method {
-        RainMethod::PerDrop => (None, f32::INFINITY),
-        RainMethod::Streaks if eye.perspective => (Some(LEVELS), NEAR),
-        RainMethod::Streaks => {
-            let mut levels = LEVELS;
-            levels[0].start = 0.0;
-            (Some(levels), 0.0)
+/// What is drawn of rain at which distance.
+pub(crate) struct Plan {
+    /// Voxels of streaks.
+    pub(crate) levels: Option<[Level; LEVEL_COUNT]>,
+    /// Drops one by one: so far from the eye across the fall, and so far at all. Unit: m.
+    pub(crate) drops_end: f32,
+    pub(crate) drops_reach: f32,
+}
+
+impl Plan {
+    pub(crate) fn new(method: RainMethod, distance: f32, eye: &Eye) -> Self {
+        let (levels, drops_end, drops_reach) = match method {
+            RainMethod::PerDrop => (None, f32::INFINITY, distance),
+            RainMethod::Streaks if eye.perspective => {
+                (Some(LEVELS), NEAR, distance.min(NEAR_REACH))
+            }
+            RainMethod::Streaks => {
+                let mut levels = LEVELS;
+                // Where a plane cuts the nearest voxels off, those at it stand for them.
+                let is_cut = eye.near >= 0.0;
+                levels[0].start = if is_cut { -levels[0].size } else { 0.0 };
+                (Some(levels), 0.0, 0.0)
+            }
+        };
+        Self {
+            levels,
+            drops_end,
+            drops_reach,
         }
+    }
+
+    /// Whether there are rays so near to the fall that drops and streaks leave some of their way.
+    pub(crate) fn leaves_some(&self, steepest: f32) -> bool {
+        let near = if self.drops_reach > 0.0 {
+            self.drops_end / self.drops_reach
+        } else {
+            0.0
+        };
+        self.levels.is_some() && steepest < near.max(STEEPEST)
     }
 }
 
 impl GpuRain {
     /// Without lights and shelters.
-    pub(crate) fn new(extracted: &ExtractedRain, eye: &Eye) -> Self {
+    pub(crate) fn new(
+        extracted: &ExtractedRain,
+        view: &GlobalTransform,
+        eye: &Eye,
+        axis: Vec3,
+    ) -> Self {
         let ExtractedRain {
             rain,
             clock,
             streaks,
             ..
         } = extracted;
-        let (levels, drops_end) = levels(rain.method, eye);
+        let plan = Plan::new(rain.method, rain.distance, eye);
+        let scale = view.affine().matrix3;
         let rate = f64::from(rain.rate);
-        let axis = fall_axis(clock.lean);
         let mut gpu = Self {
             axis,
             distance: rain.distance,
@@ -153,16 +187,16 @@ impl GpuRain {
             brightness: rain.brightness,
             fallen_tiles: clock.fallen.floor() as i64 as i32,
             fallen: (clock.fallen - clock.fallen.floor()) as f32,
-            drops_end: drops_end.min(1e9),
-            drops: count(rate, SMALLEST, LARGEST) as f32,
+            seed: (streaks.input.seed ^ (streaks.input.seed >> 32)) as u32,
+            drops_end: plan.drops_end.min(1e9),
+            drops_reach: plan.drops_reach,
+            drops: count(rate, SMALLEST, f64::INFINITY) as f32,
             exposure: streaks.input.exposure,
             seconds: clock.seconds as f32,
             wind: rain.wind,
             drift: clock.drift.as_vec2(),
             mean_speed: streaks.speed as f32,
-            slope: slope(rate) as f32,
-            smallest: SMALLEST as f32,
-            largest: LARGEST as f32,
+            view_scale: vec2(scale.y_axis.length(), scale.z_axis.length()),
             speeds: core::array::from_fn(|i| {
                 Vec4::from_array(core::array::from_fn(|k| {
                     streaks.input.law.speed(0.1 * (4 * i + k) as f64) as f32
@@ -170,7 +204,7 @@ impl GpuRain {
             }),
             ..default()
         };
-        for (gpu, level) in gpu.levels.iter_mut().zip(levels.unwrap_or_default()) {
+        for (gpu, level) in gpu.levels.iter_mut().zip(plan.levels.unwrap_or_default()) {
             let wanted = extinction(rate) * f64::from(level.size);
             *gpu = GpuRainLevel {
                 weights: density_weights(wanted, streaks.extinction) * streaks.scale,
