@@ -186,6 +186,64 @@ fn lamps_light_what_is_in_their_range() {
     }
 }
 
+/// A headlight across the view lights the same part of it, as brightly, as where every drop is lit by
+/// itself: its cone is no disc where it meets a billboard.
+#[test]
+fn a_headlights_cone_is_where_single_drops_show_it() {
+    // Mean light in blocks of the picture, from the eye on to six metres.
+    let blocks = |method| {
+        let rain = Rain {
+            method,
+            ..white_rain(50.0, 6.0)
+        };
+        let mut app = show(&VIEW, rain, 1.0 / 60.0, |world| {
+            world.spawn((
+                SpotLight {
+                    intensity: 1e5,
+                    range: 20.0,
+                    outer_angle: 0.35,
+                    inner_angle: 0.25,
+                    ..default()
+                },
+                Transform::from_translation(VIEW.pose.translation + vec3(-3.4, 0.2, -4.0))
+                    .looking_to(vec3(1.0, 0.0, 0.25), Vec3::Y),
+            ));
+        });
+        no_surroundings(&mut app);
+        set_time_step(&mut app, Duration::from_secs_f64(0.37));
+        let camera = only::<Camera3d>(&mut app);
+        let mut sums = [0.0; 8 * 6];
+        let lamp = only::<SpotLight>(&mut app);
+        for _ in 0..40 {
+            // Other voxels, the same view of the lamp.
+            for entity in [camera, lamp] {
+                let mut place = app.world_mut().get_mut::<Transform>(entity).unwrap();
+                place.translation += vec3(1.7, 0.9, 2.3);
+            }
+            step(&mut app, 1);
+            let data = radiance(&app);
+            for at in common::pixels(data.size) {
+                let block = at * uvec2(8, 6) / data.size;
+                sums[(block.y * 8 + block.x) as usize] += f64::from(data.f16x4(at.x, at.y)[1]);
+            }
+        }
+        sums
+    };
+    let (streaks, drops) = (blocks(RainMethod::Streaks), blocks(RainMethod::PerDrop));
+    let all: f64 = drops.iter().sum();
+    let apart: f64 = streaks.iter().zip(&drops).map(|(a, b)| (a - b).abs()).sum();
+    for sums in [&streaks, &drops] {
+        for row in sums.chunks(8) {
+            println!(
+                "{:.3?}",
+                row.iter().map(|sum| sum / all).collect::<Vec<_>>()
+            );
+        }
+    }
+    println!("{:.3}", apart / all);
+    assert!(apart < 0.1 * all, "{}", apart / all);
+}
+
 /// A sun on another render layer than the camera's does not light its rain; of many suns the four
 /// brightest do.
 #[test]

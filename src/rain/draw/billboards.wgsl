@@ -21,6 +21,9 @@ struct Varying {
 
 // Opacities below this change no pixel.
 const LEAST: f32 = 1e-6;
+// Drops that are seen more steeply than this are lit as if they were nearer to their billboard, and so
+// by the lamps that reach it (see `lattice.rs`).
+const LEAST_ACROSS: f32 = 0.7;
 
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
@@ -42,16 +45,42 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
     return out;
 }
 
+// Tiles beside and above each other show different drops, without a period.
+fn hash_of_tile(in: Varying) -> u32 {
+    let tile = vec2<i32>(floor(in.place)) + vec2(0, in.tile);
+    return (u32(tile.y) * 0x9E3779B1u) ^ (u32(tile.x) * 0x85EBCA77u) ^ in.hash;
+}
+
 // Opacity of a cubic voxel's drops, before what of it counts.
 fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
-    let tile = vec2<i32>(floor(in.place)) + vec2(0, in.tile);
-    // Tiles beside and above each other show different variants, without a period.
-    let chance = (u32(tile.y) * 0x9E3779B1u) ^ (u32(tile.x) * 0x85EBCA77u) ^ in.hash;
-    let variant = (chance >> 27u) % VARIANTS;
+    let variant = (hash_of_tile(in) >> 27u) % VARIANTS;
     let texel = textureSampleLevel(
         streaks, streak_sampler, vec2(in.place.x, -in.place.y), variant, mip,
     );
     return dot(texel, rain.levels[in.level].weights);
+}
+
+fn mixed(bits: u32) -> u32 {
+    let once = (bits ^ (bits >> 15u)) * 0x27D4EB2Fu;
+    return (once ^ (once >> 13u)) * 0x85EBCA6Bu;
+}
+
+fn uniform_of(bits: u32) -> f32 {
+    return f32(bits >> 8u) / 16777216.0;
+}
+
+// Where on its ray the drop that is seen is between two distances across the fall: every stretch of a
+// column of texels, as long as a streak, has a place of its own, and falls with it. All at the
+// billboard, a lamp's cone would be the disc that it cuts out of it.
+fn drop_position(in: Varying, ray: vec3<f32>, across: f32, at: f32, ends: vec2<f32>, mip: f32) -> vec3<f32> {
+#ifdef LAMPS_OR_SHELTERS
+    let column = mixed(hash_of_tile(in) ^ u32(in.place.x * STREAK_TEXELS.x * exp2(-round(mip))));
+    let stretch = fract(in.place.y) / (rain.mean_speed * rain.exposure) + uniform_of(column);
+    let there = mix(ends.x, ends.y, uniform_of(mixed(column ^ u32(stretch))));
+    return in.position + ray * ((there - at) / max(across, LEAST_ACROSS));
+#else
+    return in.position;
+#endif
 }
 
 @fragment
@@ -68,7 +97,10 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
     let end = min(min(level.end, rain.distance * across), scene);
-    let part = min(distance + 0.5 * level.size, end) - max(distance - 0.5 * level.size, level.start);
+    let ends = vec2(
+        max(distance - 0.5 * level.size, level.start), min(distance + 0.5 * level.size, end),
+    );
+    let part = ends.y - ends.x;
     if part <= 0.0 {
         discard;
     }
@@ -78,8 +110,9 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let facing = select(1.0, min(distance * in.inverse_radius, 4.0), rain.perspective == 1u);
     let counts = part * level.inverse_size * facing * rain.axis.y * inverse_steepness;
     let opacity = min(opacity_of_streaks(in, mip) * counts, 1.0);
-    if opacity < LEAST || is_sheltered(in.position) {
+    let drop = drop_position(in, ray, across, distance, ends, mip);
+    if opacity < LEAST || is_sheltered(drop) {
         discard;
     }
-    return over(in.light + lamplight(in.position, ray, in.lamps), opacity);
+    return over(in.light + lamplight(drop, ray, in.lamps), opacity);
 }

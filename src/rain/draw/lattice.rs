@@ -175,6 +175,16 @@ impl Content {
         0.87 * size / axis.y + self.longest()
     }
 
+    /// How far from a voxel's centre what is drawn of it may be lit from: drops on a billboard stand
+    /// for those before and behind it. Unit: m.
+    pub(crate) fn lit_reach(self, size: f32, axis: Vec3) -> f32 {
+        let depth = match self {
+            Self::Streaks => 0.71 * size,
+            Self::Drops(_) => 0.0,
+        };
+        self.reach(size, axis) + depth
+    }
+
     fn longest(self) -> f32 {
         match self {
             Self::Streaks => 0.0,

@@ -133,6 +133,8 @@ impl SpecializedRenderPipeline for RainPipeline {
             (suns, "SUNS"),
             (lamps, "LAMPS"),
             (shelters, "SHELTERS"),
+            // Where on its way a drop is makes a difference.
+            (lamps || shelters, "LAMPS_OR_SHELTERS"),
         ]
         .into_iter()
         .filter(|(is_there, _)| *is_there)

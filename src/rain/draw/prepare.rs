@@ -122,7 +122,7 @@ pub(crate) fn queue_rain(
         let keep = |content: Content| {
             move |quad: &mut GpuQuad| {
                 if !near.is_empty() {
-                    quad.lamps = near.reaching(quad.center, content.reach(quad.size, axis));
+                    quad.lamps = near.reaching(quad.center, content.lit_reach(quad.size, axis));
                 }
                 always || quad.lamps != 0
             }
