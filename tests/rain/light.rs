@@ -218,7 +218,7 @@ fn a_headlights_cone_is_where_single_drops_show_it() {
             // Other voxels, the same view of the lamp.
             for entity in [camera, lamp] {
                 let mut place = app.world_mut().get_mut::<Transform>(entity).unwrap();
-                place.translation += vec3(1.7, 0.9, 2.3);
+                place.translation += vec3(1.7, 0.9, 0.61);
             }
             step(&mut app, 1);
             let data = radiance(&app);

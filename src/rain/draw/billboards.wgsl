@@ -4,7 +4,7 @@
     clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
     scene_view_depth, streak_sampler, streaks, surroundings, view,
 }
-#import bevy_fluid::rain::draw::types::{STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
+#import bevy_fluid::rain::draw::types::{GpuRainLevel, STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -69,6 +69,26 @@ fn uniform_of(bits: u32) -> f32 {
     return f32(bits >> 8u) / 16777216.0;
 }
 
+// How much of a voxel at a distance lies in its level, up to `end`.
+fn within(level: GpuRainLevel, at: f32, end: f32) -> f32 {
+    let low = max(at - 0.5 * level.size, level.start);
+    return max(min(at + 0.5 * level.size, min(level.end, end)) - low, 0.0);
+}
+
+// How much of the way stands for a voxel at a distance. Those across an end of the level are not drawn,
+// for half as much to fill; their mirror images within count for them. Parallel rays all meet the same
+// voxels: there they fade at the ends, and only those that the near plane cuts off are mirrored.
+fn part_of_voxel(level: GpuRainLevel, at: f32, end: f32) -> f32 {
+    if rain.perspective == 0u {
+        return within(level, at, end) + within(level, -at, end);
+    }
+    if at < level.start || at >= level.end {
+        return 0.0;
+    }
+    return within(level, at, end) + within(level, 2.0 * level.start - at, end)
+        + within(level, 2.0 * level.end - at, end);
+}
+
 // Where on its ray the drop that is seen is between two distances across the fall: every stretch of a
 // column of texels, as long as a streak, has a place of its own, and falls with it. All at the
 // billboard, a lamp's cone would be the disc that it cuts out of it.
@@ -96,11 +116,8 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // The part of the voxel that is before the scene, within the level's range and in sight.
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
-    let end = min(min(level.end, rain.distance * across), scene);
-    let ends = vec2(
-        max(distance - 0.5 * level.size, level.start), min(distance + 0.5 * level.size, end),
-    );
-    let part = ends.y - ends.x;
+    let end = min(rain.distance * across, scene);
+    let part = part_of_voxel(level, distance, end);
     if part <= 0.0 {
         discard;
     }
@@ -110,6 +127,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let facing = select(1.0, min(distance * in.inverse_radius, 4.0), rain.perspective == 1u);
     let counts = part * level.inverse_size * facing * rain.axis.y * inverse_steepness;
     let opacity = min(opacity_of_streaks(in, mip) * counts, 1.0);
+    let ends = vec2(distance - 0.5 * level.size, min(distance + 0.5 * level.size, end));
     let drop = drop_position(in, ray, across, distance, ends, mip);
     if opacity < LEAST || is_sheltered(drop) {
         discard;

@@ -33,7 +33,8 @@ pub(crate) const NEAR_REACH: f32 = 8.0;
 pub(crate) const STEEPEST: f32 = 0.15;
 
 /// Voxels of streaks, from [`NEAR`] on, or from the eye on where all rays are parallel. A voxel shows
-/// its drops as if all were at its middle.
+/// its drops as if all were at its middle; where a level ends, voxels before the end stand for what
+/// reaches in from behind it (see `part_of_voxel` in `billboards.wgsl`).
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
     level(2.0, NEAR, 6.0),
     level(4.0, 6.0, 14.0),
@@ -55,8 +56,6 @@ pub(crate) struct Eye {
     pub(crate) position: DVec3,
     pub(crate) forward: Vec3,
     pub(crate) perspective: bool,
-    /// Depth of the near plane. Unit: m.
-    pub(crate) near: f32,
     /// Planes with normals to the inside, relative to the eye.
     planes: [Vec4; 4],
     /// A box around what is seen up to the distance, relative to the eye.
@@ -94,13 +93,11 @@ impl Eye {
             distance + 0.5 * last.map_or(0.0, |level| level.size) / steepness
         };
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let mut near_depth = 0.0;
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             // Two points of the ray, both at finite distances in every projection.
             let near = relative_from_clip.project_point3(vec3(x, y, 1.0));
             let way = relative_from_clip.project_point3(vec3(x, y, 0.5)) - near;
             let far = near + way * ((depth - near.dot(forward)) / way.dot(forward));
-            near_depth = near.dot(forward);
             low = low.min(near).min(far);
             high = high.max(near).max(far);
         }
@@ -114,7 +111,6 @@ impl Eye {
             position: world_from_view.translation().as_dvec3(),
             forward,
             perspective,
-            near: near_depth,
             planes,
             low,
             high,
@@ -183,6 +179,14 @@ impl Content {
             Self::Drops(_) => 0.0,
         };
         self.reach(size, axis) + depth
+    }
+
+    /// How far before its billboard a voxel begins to count. Unit: m.
+    fn half(self, size: f32) -> f32 {
+        match self {
+            Self::Streaks => 0.5 * size,
+            Self::Drops(_) => 0.0,
+        }
     }
 
     fn longest(self) -> f32 {
@@ -292,6 +296,12 @@ fn radius_in(
 ) -> Option<f32> {
     let half = 0.5 * level.size;
     let across = |way: Vec3| way - way.dot(axis) * axis;
+    // Of its part of the level, and of what is in sight, some must be there.
+    let is_within = |nearest: f32, farthest: f32| {
+        nearest < level.end
+            && nearest < distance + content.half(level.size)
+            && farthest > level.start
+    };
     let (radius, nearest, farthest) = if !eye.perspective {
         // Parallel rays begin at the view's plane.
         let depth = center.dot(eye.forward);
@@ -302,7 +312,7 @@ fn radius_in(
                     return None;
                 }
                 let radius = depth * steepness;
-                // The billboard leans against the view's plane.
+                // The billboard leans against the view's plane, and fades at the ends.
                 let reach = half * (1.0 + steepness / axis.y);
                 (radius, radius - reach, radius + reach)
             }
@@ -318,14 +328,14 @@ fn radius_in(
         match content {
             // The billboard turns with the direction to its centre: at the centre it has none.
             Content::Streaks if radius < 0.1 * level.size => return None,
-            // The billboard's ends are farther away, and it stands for what is behind it, too.
-            Content::Streaks => (radius, radius - half, radius.hypot(half) + half),
+            // The billboard's ends are farther away.
+            Content::Streaks => (radius, radius, radius.hypot(half)),
             // Corners of a square.
             Content::Drops(_) => (radius, radius - 1.42 * half, radius + 1.42 * half),
         }
     };
-    let within = nearest < level.end.min(distance) && farthest > level.start;
-    (within && eye.sees(center, content.reach(level.size, axis))).then_some(radius)
+    (is_within(nearest, farthest) && eye.sees(center, content.reach(level.size, axis)))
+        .then_some(radius)
 }
 
 fn hash(words: [u32; 3]) -> u32 {

@@ -135,9 +135,7 @@ impl Plan {
             }
             RainMethod::Streaks => {
                 let mut levels = LEVELS;
-                // Where a plane cuts the nearest voxels off, those at it stand for them.
-                let is_cut = eye.near >= 0.0;
-                levels[0].start = if is_cut { -levels[0].size } else { 0.0 };
+                levels[0].start = 0.0;
                 (Some(levels), 0.0, 0.0)
             }
         };

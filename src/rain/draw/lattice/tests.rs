@@ -148,11 +148,16 @@ fn way_in(quad: &GpuQuad, ray: Vec3, axis: Vec3) -> f32 {
     let level = LEVELS[quad.level as usize];
     let steepness = (1.0 - ray.dot(axis).powi(2)).sqrt();
     let distance = t * steepness;
+    if !(level.start..level.end).contains(&distance) {
+        return 0.0;
+    }
     let end = level.end.min(DISTANCE * steepness);
     let half = 0.5 * quad.size;
-    let part = (distance + half).min(end) - (distance - half).max(level.start);
+    let within = |at: f32| ((at + half).min(end) - (at - half).max(level.start)).max(0.0);
+    let mirrored = [level.start, level.end].map(|border| within(2.0 * border - distance));
+    let part = within(distance) + mirrored[0] + mirrored[1];
     let facing = (distance / quad.radius).min(4.0);
-    part.max(0.0) * facing * axis.y / steepness
+    part * facing * axis.y / steepness
 }
 
 #[test]
