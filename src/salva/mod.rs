@@ -89,7 +89,7 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::{emitter::ParticleEmitter, schedule::FluidSystems};
+use crate::schedule::FluidSystems;
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s. It stands beside
 /// [`FluidPlugin`](crate::FluidPlugin), which draws; without that it simulates all the same.
@@ -109,7 +109,6 @@ impl Plugin for SalvaPlugin {
             .register_type::<SalvaLoad>()
             .register_type::<SalvaSettings>()
             .register_type::<SalvaStatus>()
-            .register_required_components::<ParticleEmitter, emit::Kept>()
             .init_resource::<SalvaSettings>()
             .init_resource::<SalvaStatus>()
             .init_resource::<runner::Simulation>()

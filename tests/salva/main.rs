@@ -6,5 +6,6 @@ mod cost;
 mod coupling;
 mod leaks;
 mod life;
+mod limits;
 mod pool;
 mod rest;
