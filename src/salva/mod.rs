@@ -112,6 +112,8 @@ impl Plugin for SalvaPlugin {
             .init_resource::<SalvaSettings>()
             .init_resource::<SalvaStatus>()
             .init_resource::<runner::Simulation>()
+            .add_observer(gather::start_anew::<SalvaBoundary>)
+            .add_observer(gather::start_anew::<SalvaBody>)
             .add_systems(
                 PostUpdate,
                 (

@@ -15,7 +15,7 @@ use bevy::{
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
-    SalvaMode, SalvaSettings, SalvaStatus,
+    SalvaError, SalvaMode, SalvaSettings, SalvaStatus,
     gather::{FluidEntry, SolidEntry},
     pace::Pace,
     world::{Command, Frame, Job, Report, World},
@@ -35,6 +35,8 @@ pub(crate) struct Simulation {
     commands: Vec<Command>,
     /// Commands ever given.
     pub(crate) told: u64,
+    /// Of them, those that jobs have been given.
+    pub(crate) sent: u64,
     /// The last two finished states, and one to be filled.
     pub(crate) from: Frame,
     pub(crate) to: Frame,
@@ -82,6 +84,14 @@ impl Simulation {
         if status.stopped {
             return;
         }
+        for (entity, solid) in &mut self.solids {
+            if core::mem::take(&mut solid.is_moved) {
+                self.commands
+                    .push(Command::Move(entity.to_bits(), solid.at));
+            }
+        }
+        self.sent = self.told;
+        let told = self.told;
         let mut world = self.world.take().unwrap_or_default();
         let mut frame = core::mem::take(&mut self.spare);
         let commands = core::mem::take(&mut self.commands);
@@ -95,7 +105,7 @@ impl Simulation {
                 if let Some(before_job) = before_job {
                     before_job();
                 }
-                world.apply(commands);
+                world.apply(commands, told);
                 let report = world.advance(&job, &mut frame);
                 (world, frame, report)
             }));
@@ -137,6 +147,13 @@ impl Simulation {
         status.simulated = self.to.time;
         status.particles = self.to.liquids.iter().map(|it| it.ids.len()).sum();
         self.unsampled.extend(report.unsampled);
+        for id in report.unmade {
+            if let Some(solid) = self.solids.get_mut(&Entity::from_bits(id))
+                && solid.made <= self.to.applied
+            {
+                solid.refused = Some(SalvaError::Mesh);
+            }
+        }
     }
 }
 

@@ -105,7 +105,7 @@ impl Simulation {
         let is_written = known.is_some_and(|known| known.written == particles.last_changed());
         if is_written {
             if fluid.is_changed() {
-                self.tell(Command::Fluid(id, Substance::from(&**fluid)));
+                self.tell(Command::Substance(id, Substance::from(&**fluid)));
             }
             return Ok(());
         }
@@ -129,13 +129,12 @@ impl Simulation {
         } else {
             self.tell(Command::Radius(radius));
         }
-        self.tell(Command::Fluid(id, Substance::from(&**fluid)));
         let places = particles.positions.iter();
         let newborn = Newborn {
             positions: places.map(|&place| space.transform_point3(place)).collect(),
             velocities: vec![fluid.clamped().velocity],
         };
-        let told = self.tell(Command::Replace(id, newborn));
+        let told = self.tell(Command::Fluid(id, Substance::from(&**fluid), newborn));
         let entry = FluidEntry {
             radius,
             written: particles.last_changed(),
