@@ -118,12 +118,13 @@ impl Plugin for SalvaPlugin {
                 PostUpdate,
                 (
                     runner::collect,
-                    gather::gather_fluids,
-                    gather::gather_solids,
+                    (gather::gather_fluids, gather::gather_solids)
+                        .chain()
+                        .run_if(runner::goes_on),
                     runner::advance,
-                    show::show_fluids,
-                    show::show_bodies,
-                    show::show_loads,
+                    (show::show_fluids, show::show_bodies, show::show_loads)
+                        .chain()
+                        .run_if(runner::goes_on),
                 )
                     .chain()
                     .in_set(SalvaSystems)
@@ -132,6 +133,7 @@ impl Plugin for SalvaPlugin {
             .add_systems(
                 PostUpdate,
                 emit::emit
+                    .run_if(runner::goes_on)
                     .in_set(FluidSystems::Emit)
                     .after(TransformSystems::Propagate),
             );

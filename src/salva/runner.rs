@@ -32,11 +32,13 @@ pub(crate) struct Simulation {
     world: Option<Box<World>>,
     task: Option<Task<Finished>>,
     /// What the world is told before its next job.
-    commands: Vec<Command>,
+    pub(crate) commands: Vec<Command>,
     /// Commands ever given.
     pub(crate) told: u64,
     /// Of them, those that jobs have been given.
     pub(crate) sent: u64,
+    /// Whether salva has panicked: nobody is there to be told anything.
+    is_over: bool,
     /// The last two finished states, and one to be filled.
     pub(crate) from: Frame,
     pub(crate) to: Frame,
@@ -58,8 +60,10 @@ pub(crate) struct Simulation {
 impl Simulation {
     /// Tells the world something, and returns how many things it has been told with this one.
     pub(crate) fn tell(&mut self, command: Command) -> u64 {
-        self.commands.push(command);
-        self.told += 1;
+        if !self.is_over {
+            command.join(&mut self.commands);
+            self.told += 1;
+        }
         self.told
     }
 
@@ -81,7 +85,7 @@ impl Simulation {
     }
 
     fn begin(&mut self, job: Job, mode: SalvaMode, status: &mut SalvaStatus) {
-        if status.stopped {
+        if self.is_over {
             return;
         }
         for (entity, solid) in &mut self.solids {
@@ -128,6 +132,8 @@ impl Simulation {
         let Some((world, frame, report)) = finished else {
             error!("the simulation panicked; fluids and bodies stay where they are");
             status.stopped = true;
+            self.is_over = true;
+            self.commands = Vec::new();
             return;
         };
         self.world = Some(world);
@@ -155,6 +161,11 @@ impl Simulation {
             }
         }
     }
+}
+
+/// Whether there is a simulation, which ends with a panic of salva.
+pub(crate) fn goes_on(simulation: Res<Simulation>) -> bool {
+    !simulation.is_over
 }
 
 /// Takes a finished job's results.

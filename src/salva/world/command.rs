@@ -71,6 +71,51 @@ pub(crate) struct Report {
     pub(crate) unmade: Vec<Id>,
 }
 
+impl Command {
+    /// Joins those that wait, and takes out what it makes needless: while time stands still, they
+    /// would become ever more.
+    pub(crate) fn join(self, waiting: &mut Vec<Self>) {
+        waiting.retain(|old| !self.replaces(old));
+        waiting.push(self);
+    }
+
+    fn replaces(&self, old: &Self) -> bool {
+        match (self, old) {
+            (Self::Radius(_), Self::Radius(_)) => true,
+            (Self::Substance(id, _), Self::Substance(other, _))
+            | (Self::Limit(id, _), Self::Limit(other, _))
+            | (Self::Alter(id, _), Self::Alter(other, _))
+            | (Self::Move(id, _), Self::Move(other, _))
+            | (Self::Jump(id, _), Self::Jump(other, _)) => id == other,
+            (Self::RemoveFluid(id), old) => old.fluid() == Some(*id),
+            (Self::Solid { id, .. } | Self::RemoveSolid(id), old) => old.solid() == Some(*id),
+            _ => false,
+        }
+    }
+
+    fn fluid(&self) -> Option<Id> {
+        match self {
+            Self::Fluid(id, ..)
+            | Self::Substance(id, _)
+            | Self::Add(id, _)
+            | Self::Limit(id, _)
+            | Self::RemoveFluid(id) => Some(*id),
+            _ => None,
+        }
+    }
+
+    fn solid(&self) -> Option<Id> {
+        match self {
+            Self::Solid { id, .. }
+            | Self::Alter(id, _)
+            | Self::Move(id, _)
+            | Self::Jump(id, _)
+            | Self::RemoveSolid(id) => Some(*id),
+            _ => None,
+        }
+    }
+}
+
 impl World {
     /// Applies `commands` in their order, with which it has been `told` so many.
     pub(crate) fn apply(&mut self, commands: impl IntoIterator<Item = Command>, told: u64) {
