@@ -38,8 +38,9 @@
 //! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
 //! gathered, the next steps begin on other threads, and positions between the last two finished
 //! states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies' `Transform`.
-//! Nobody waits: what is shown lags a frame and a step behind, and where the machine is too slow the
-//! liquid moves in slow motion ([`SalvaStatus::speed`]). [`SalvaSettings::budget`] says how much of a
+//! Nobody waits, not for the hulls and trees of meshes either: what is shown lags a frame and a step
+//! behind, and where the machine is too slow the liquid moves in slow motion
+//! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] says how much of a
 //! frame's time it may take; [`SalvaMode::Lockstep`] waits, and repeats itself bit for bit.
 //!
 //! # What is simulated

@@ -220,6 +220,30 @@ fn nothing_piles_up_while_time_stands_still() {
 }
 
 #[test]
+fn what_is_refused_is_not_tried_again() {
+    let mut app = app();
+    drop_of_water(&mut app);
+    let mut meshes = Assets::<Mesh>::default();
+    let sheet = Mesh3d(meshes.add(Plane3d::default().mesh().size(1.0, 1.0)));
+    app.insert_resource(meshes);
+    app.world_mut().spawn((SalvaBody::default(), sheet));
+    app.update();
+    app.update();
+    finish_job(&mut app);
+    let told = |app: &App| app.world().resource::<Simulation>().told;
+    let before = told(&app);
+    let refused = |app: &App| {
+        let solids = &app.world().resource::<Simulation>().solids;
+        solids.values().all(|solid| solid.refused.is_some())
+    };
+    for _ in 0..10 {
+        app.update();
+        assert!(refused(&app));
+    }
+    assert_eq!(told(&app), before);
+}
+
+#[test]
 fn nothing_piles_up_when_salva_has_panicked() {
     let mut app = app();
     let emitter = ParticleEmitter {

@@ -14,7 +14,7 @@ fn a_tank_takes_its_water_along_without_a_wait() {
     let size = vec3(0.4, 2.0, 0.4);
     let (tank, water) = pool(&mut app, size, 0.4);
     let count = particles(&app, water).len();
-    let mut update = |app: &mut App| {
+    let update = |app: &mut App| {
         app.update();
         // About what a step of so few takes.
         sleep(Duration::from_millis(3));

@@ -244,8 +244,9 @@ impl Simulation {
             // There may be an older form of it.
             Err(_) => self
                 .solids
-                .contains_key(&entity)
-                .then_some(Command::RemoveSolid(id)),
+                .get(&entity)
+                .filter(|known| known.refused.is_none())
+                .map(|_| Command::RemoveSolid(id)),
         };
         let made = command.map_or(self.told, |command| self.tell(command));
         let entry = SolidEntry {
