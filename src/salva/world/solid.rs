@@ -212,6 +212,8 @@ impl Solid {
     /// At once, without a velocity.
     pub(crate) fn jump(&mut self, rigid_world: &mut PhysicsWorld, at: Isometry3d) {
         (self.before, self.at, self.target) = (at, at, at);
+        (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
+        self.center = at.translation.into();
         if let Some(body) = rigid_world.bodies.get_mut(self.body) {
             body.set_position(pose(at), true);
             if self.is_dynamic() {
@@ -314,4 +316,43 @@ impl Solid {
 fn set_velocities(body: &mut RigidBody, [velocity, angular_velocity]: [Vec3; 2]) {
     body.set_linvel(rigid(velocity), true);
     body.set_angvel(rigid(angular_velocity), true);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_altered_body_has_another_mass_and_the_same_motion() {
+        let mut rigid_world = PhysicsWorld::new();
+        let mut liquid_world = super::super::new_liquid_world(0.05);
+        let traits = |density: f32, x: f32| Traits {
+            motion: Motion::Dynamic {
+                density,
+                velocity: Vec3::X * x,
+                angular_velocity: Vec3::ZERO,
+            },
+            contact: Contact {
+                friction: 0.5,
+                restitution: 0.0,
+            },
+            feels: false,
+        };
+        let mut solid = Solid::new(
+            &mut rigid_world,
+            &mut liquid_world,
+            Geometry::cuboid(Vec3::splat(0.5)),
+            traits(100.0, 1.0),
+            Isometry3d::IDENTITY,
+        );
+        let mass = |world: &PhysicsWorld, solid: &Solid| world.bodies[solid.body].mass();
+        assert!((mass(&rigid_world, &solid) - 100.0).abs() < 1e-3);
+        // It has been pushed since.
+        set_velocities(&mut rigid_world.bodies[solid.body], [Vec3::Y, Vec3::Z]);
+        solid.alter(&mut rigid_world, traits(300.0, 1.0));
+        assert!((mass(&rigid_world, &solid) - 300.0).abs() < 1e-3);
+        assert_eq!([solid.velocity, solid.angular_velocity], [Vec3::Y, Vec3::Z]);
+        solid.alter(&mut rigid_world, traits(300.0, 2.0));
+        assert_eq!(solid.velocity, Vec3::X * 2.0);
+    }
 }
