@@ -44,8 +44,11 @@ pub enum SalvaError {
         /// Radius of the fluid that came first, m.
         others: f32,
     },
-    /// There is no `Mesh3d`, or no triangles in it that the main world has.
-    #[error("there is no `Mesh3d` with triangles in the main world")]
+    /// There is no `Mesh3d`, or no triangles in it that the main world has, or a body's enclose
+    /// nothing.
+    #[error(
+        "there is no `Mesh3d` with triangles in the main world, or a body's hull has no volume"
+    )]
     Mesh,
     /// A size that is none.
     #[error("`SalvaShape` {0:?} (scaled) is none: sizes must be finite and above 0")]

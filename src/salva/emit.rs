@@ -9,10 +9,6 @@ use super::{
 };
 use crate::emitter::{Emission, ParticleEmitter, step};
 
-/// What an emitter's fluid has been told to keep, by which it is told only changes.
-#[derive(Component, Default)]
-pub(crate) struct Kept(Option<Limits>);
-
 /// Tells of newborn particles, and of which are to stay.
 pub(crate) fn emit(
     mut simulation: ResMut<Simulation>,
@@ -23,12 +19,12 @@ pub(crate) fn emit(
             Mut<ParticleEmitter>,
             &GlobalTransform,
             &mut Emission,
-            &mut Kept,
         ),
         With<SalvaFluid>,
     >,
     time: Res<Time>,
 ) {
+    let settings = settings.clamped();
     // Where the liquid moves in slow motion, so does what comes out.
     let pace = if settings.paused {
         0.0
@@ -36,7 +32,7 @@ pub(crate) fn emit(
         simulation.pace.rate
     };
     let seconds = step(&time) * pace;
-    for (entity, mut emitter, transform, mut emission, mut kept) in &mut emitters {
+    for (entity, mut emitter, transform, mut emission) in &mut emitters {
         let own = ParticleEmitter::take(&mut emitter, seconds);
         let mut newborn = Newborn::default();
         emission.emit(&own, transform, seconds, |birth| {
@@ -48,21 +44,21 @@ pub(crate) fn emit(
                 .velocities
                 .push(birth.velocity + birth.age * settings.gravity);
         });
-        if !simulation.fluids.contains_key(&entity) {
-            kept.0 = None;
+        let Some(entry) = simulation.fluids.get_mut(&entity) else {
             continue;
-        }
+        };
         let id = entity.to_bits();
+        let to_space = Mat4::from(transform.affine().inverse());
         let limits = Limits {
             lifetime: own.lifetime,
             capacity: own.capacity as usize,
-            bounds: own.bounds.map(|bounds| {
-                let to_space = Mat4::from(transform.affine().inverse());
-                (to_space, [bounds.min, bounds.max])
-            }),
+            // A space without an extent bounds nothing.
+            bounds: own
+                .bounds
+                .filter(|_| to_space.is_finite())
+                .map(|bounds| (to_space, [bounds.min, bounds.max])),
         };
-        if kept.0 != Some(limits) {
-            kept.0 = Some(limits);
+        if entry.limits.replace(limits) != Some(limits) {
             simulation.tell(Command::Limit(id, limits));
         }
         if !newborn.positions.is_empty() {

@@ -38,8 +38,9 @@
 //! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
 //! gathered, the next steps begin on other threads, and positions between the last two finished
 //! states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies' `Transform`.
-//! Nobody waits: what is shown lags a frame and a step behind, and where the machine is too slow the
-//! liquid moves in slow motion ([`SalvaStatus::speed`]). [`SalvaSettings::budget`] says how much of a
+//! Nobody waits, not for the hulls and trees of meshes either: what is shown lags a frame and a step
+//! behind, and where the machine is too slow the liquid moves in slow motion
+//! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] says how much of a
 //! frame's time it may take; [`SalvaMode::Lockstep`] waits, and repeats itself bit for bit.
 //!
 //! # What is simulated
@@ -89,7 +90,7 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::{emitter::ParticleEmitter, schedule::FluidSystems};
+use crate::schedule::FluidSystems;
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s. It stands beside
 /// [`FluidPlugin`](crate::FluidPlugin), which draws; without that it simulates all the same.
@@ -109,20 +110,22 @@ impl Plugin for SalvaPlugin {
             .register_type::<SalvaLoad>()
             .register_type::<SalvaSettings>()
             .register_type::<SalvaStatus>()
-            .register_required_components::<ParticleEmitter, emit::Kept>()
             .init_resource::<SalvaSettings>()
             .init_resource::<SalvaStatus>()
             .init_resource::<runner::Simulation>()
+            .add_observer(gather::start_anew::<SalvaBoundary>)
+            .add_observer(gather::start_anew::<SalvaBody>)
             .add_systems(
                 PostUpdate,
                 (
                     runner::collect,
-                    gather::gather_fluids,
-                    gather::gather_solids,
+                    (gather::gather_fluids, gather::gather_solids)
+                        .chain()
+                        .run_if(runner::goes_on),
                     runner::advance,
-                    show::show_fluids,
-                    show::show_bodies,
-                    show::show_loads,
+                    (show::show_fluids, show::show_bodies, show::show_loads)
+                        .chain()
+                        .run_if(runner::goes_on),
                 )
                     .chain()
                     .in_set(SalvaSystems)
@@ -131,6 +134,7 @@ impl Plugin for SalvaPlugin {
             .add_systems(
                 PostUpdate,
                 emit::emit
+                    .run_if(runner::goes_on)
                     .in_set(FluidSystems::Emit)
                     .after(TransformSystems::Propagate),
             );

@@ -15,7 +15,7 @@ use bevy::{
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
-    SalvaMode, SalvaSettings, SalvaStatus,
+    SalvaError, SalvaMode, SalvaSettings, SalvaStatus,
     gather::{FluidEntry, SolidEntry},
     pace::Pace,
     world::{Command, Frame, Job, Report, World},
@@ -32,9 +32,13 @@ pub(crate) struct Simulation {
     world: Option<Box<World>>,
     task: Option<Task<Finished>>,
     /// What the world is told before its next job.
-    commands: Vec<Command>,
+    pub(crate) commands: Vec<Command>,
     /// Commands ever given.
     pub(crate) told: u64,
+    /// Of them, those that jobs have been given.
+    pub(crate) sent: u64,
+    /// Whether salva has panicked: nobody is there to be told anything.
+    is_over: bool,
     /// The last two finished states, and one to be filled.
     pub(crate) from: Frame,
     pub(crate) to: Frame,
@@ -56,8 +60,10 @@ pub(crate) struct Simulation {
 impl Simulation {
     /// Tells the world something, and returns how many things it has been told with this one.
     pub(crate) fn tell(&mut self, command: Command) -> u64 {
-        self.commands.push(command);
-        self.told += 1;
+        if !self.is_over {
+            command.join(&mut self.commands);
+            self.told += 1;
+        }
         self.told
     }
 
@@ -79,9 +85,17 @@ impl Simulation {
     }
 
     fn begin(&mut self, job: Job, mode: SalvaMode, status: &mut SalvaStatus) {
-        if status.stopped {
+        if self.is_over {
             return;
         }
+        for (entity, solid) in &mut self.solids {
+            if core::mem::take(&mut solid.is_moved) {
+                self.commands
+                    .push(Command::Move(entity.to_bits(), solid.at));
+            }
+        }
+        self.sent = self.told;
+        let told = self.told;
         let mut world = self.world.take().unwrap_or_default();
         let mut frame = core::mem::take(&mut self.spare);
         let commands = core::mem::take(&mut self.commands);
@@ -95,7 +109,7 @@ impl Simulation {
                 if let Some(before_job) = before_job {
                     before_job();
                 }
-                world.apply(commands);
+                world.apply(commands, told);
                 let report = world.advance(&job, &mut frame);
                 (world, frame, report)
             }));
@@ -118,6 +132,8 @@ impl Simulation {
         let Some((world, frame, report)) = finished else {
             error!("the simulation panicked; fluids and bodies stay where they are");
             status.stopped = true;
+            self.is_over = true;
+            self.commands = Vec::new();
             return;
         };
         self.world = Some(world);
@@ -137,7 +153,19 @@ impl Simulation {
         status.simulated = self.to.time;
         status.particles = self.to.liquids.iter().map(|it| it.ids.len()).sum();
         self.unsampled.extend(report.unsampled);
+        for id in report.unmade {
+            if let Some(solid) = self.solids.get_mut(&Entity::from_bits(id))
+                && solid.made <= self.to.applied
+            {
+                solid.refused = Some(SalvaError::Mesh);
+            }
+        }
     }
+}
+
+/// Whether there is a simulation, which ends with a panic of salva.
+pub(crate) fn goes_on(simulation: Res<Simulation>) -> bool {
+    !simulation.is_over
 }
 
 /// Takes a finished job's results.

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     SalvaError, SalvaShape,
-    world::{Geometry, Triangle},
+    world::{Geometry, Recipe, Triangle},
 };
 
 /// An entity's place without its scale, and the scale, shear included, by itself.
@@ -21,13 +21,13 @@ pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Mat3), S
     Ok((Isometry3d::new(translation, rotation), scale))
 }
 
-/// The shape of a boundary, or of a body.
-pub(crate) fn geometry(
+/// What the shape of a boundary, or of a body, is to be made of.
+pub(crate) fn recipe(
     shape: SalvaShape,
     scale: Mat3,
     mesh: Option<&Mesh>,
     is_body: bool,
-) -> Result<Geometry, SalvaError> {
+) -> Result<Recipe, SalvaError> {
     let factors = vec3(
         scale.x_axis.length(),
         scale.y_axis.length(),
@@ -44,35 +44,33 @@ pub(crate) fn geometry(
         let is_sound = half.is_finite() && half.cmpgt(Vec3::ZERO).all();
         is_sound.then_some(half).ok_or(SalvaError::Shape(shape))
     };
-    match shape {
-        SalvaShape::Cuboid { size } => Ok(Geometry::cuboid(half(size)?)),
-        SalvaShape::Sphere { radius } => Ok(Geometry::sphere(length(radius)?)),
+    let geometry = match shape {
+        SalvaShape::Cuboid { size } => Some(Geometry::cuboid(half(size)?)),
+        SalvaShape::Sphere { radius } => Some(Geometry::sphere(length(radius)?)),
         SalvaShape::Capsule {
             radius,
             length: shaft,
         } => {
             // A shaft of no length makes a ball.
             let shaft = if shaft == 0.0 { 0.0 } else { length(shaft)? };
-            Ok(Geometry::capsule(length(radius)?, 0.5 * shaft))
+            Some(Geometry::capsule(length(radius)?, 0.5 * shaft))
         }
         SalvaShape::Cylinder { radius, height } => {
-            let cylinder = Geometry::cylinder(length(radius)?, 0.5 * length(height)?);
-            cylinder.ok_or(SalvaError::Shape(shape))
+            Geometry::cylinder(length(radius)?, 0.5 * length(height)?)
         }
-        SalvaShape::Tank { .. } | SalvaShape::Plane if is_body => Err(SalvaError::BodyShape),
-        SalvaShape::Tank { size } => Geometry::tank(half(size)?).ok_or(SalvaError::Shape(shape)),
-        SalvaShape::Plane => Ok(Geometry::plane()),
+        SalvaShape::Tank { .. } | SalvaShape::Plane if is_body => {
+            return Err(SalvaError::BodyShape);
+        }
+        SalvaShape::Tank { size } => Geometry::tank(half(size)?),
+        SalvaShape::Plane => Some(Geometry::plane()),
         SalvaShape::Mesh => {
             let faces = mesh.and_then(|mesh| triangles(mesh, scale));
             let faces = faces.ok_or(SalvaError::Mesh)?;
-            let geometry = if is_body {
-                Geometry::hull(&faces)
-            } else {
-                Geometry::mesh(faces)
-            };
-            geometry.ok_or(SalvaError::Mesh)
+            let recipe = if is_body { Recipe::Hull } else { Recipe::Mesh };
+            return Ok(recipe(faces));
         }
-    }
+    };
+    geometry.map(Recipe::Made).ok_or(SalvaError::Shape(shape))
 }
 
 /// The triangles of a mesh, scaled. A scale that mirrors turns them round again.

@@ -11,7 +11,7 @@ pub enum SalvaShape {
     /// The entity's `Mesh3d`, which must be kept in the main world (`RenderAssetUsages`). For a
     /// boundary its triangles: liquid is where their faces look, so a closed mesh keeps it out
     /// or, with its walls modelled, in; walls should be two radii thick. For a body their convex
-    /// hull. What changes within a mesh later is not noticed.
+    /// hull, which must have a volume. What changes within a mesh later is not noticed.
     #[default]
     Mesh,
     /// A solid block about the origin.
@@ -57,8 +57,13 @@ pub enum SalvaShape {
 /// A solid that liquid and [`SalvaBody`]s run against: at rest, or moved by its transform.
 ///
 /// Between two frames it moves evenly, and its velocity counts: a plunger makes waves, a tipped
-/// tank pours. To have it elsewhere at once, insert it again. No particle passes its surface, from
-/// neither side, however fast.
+/// tank pours. To have it elsewhere at once, insert it again; what is moved faster than
+/// [`SalvaSettings::max_speed`](super::SalvaSettings::max_speed) is so by itself. No particle passes
+/// its surface, from neither side, however fast.
+///
+/// It is always where its transform is, also where the liquid moves in slow motion: at a fifth of the
+/// speed a plunger of 1 m/s would hit it with 5. Move it in the liquid's time where that matters: by
+/// `time.delta_secs() * status.speed` of [`SalvaStatus`](super::SalvaStatus).
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Transform)]
@@ -110,6 +115,9 @@ impl Default for SalvaBoundary {
 ///
 /// Its `Transform` is written in every update, as the world's: it must have no parent. A transform
 /// written by somebody else is taken over, at rest. Its size should be some particles across.
+///
+/// What else is changed leaves its motion alone; inserted again it starts anew. Beside a
+/// [`SalvaBoundary`], it is what counts.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Transform)]
@@ -120,10 +128,11 @@ pub struct SalvaBody {
     /// trembles, as the liquid answers a step late.
     #[reflect(@SettingRange::new(20.0, 1e5).unit("kg/m³").logarithmic())]
     pub density: f32,
-    /// What it starts with. Unit: m/s, default 0.
+    /// What it starts with; changed later, what it is given at once. Unit: m/s, default 0.
     #[reflect(@SettingRange::new(-100.0, 100.0).unit("m/s").open())]
     pub velocity: Vec3,
-    /// What it starts with. Unit: rad/s, default 0.
+    /// What it starts with; changed later, what it is given at once together with the velocity.
+    /// Unit: rad/s, default 0.
     #[reflect(@SettingRange::new(-100.0, 100.0).unit("rad/s").open())]
     pub angular_velocity: Vec3,
     /// Range 0..=10, default 0.5.

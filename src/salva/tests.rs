@@ -8,9 +8,13 @@ use std::{
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 
 use super::{
-    SalvaBody, SalvaFluid, SalvaPlugin, SalvaSettings, SalvaShape, SalvaStatus, runner::Simulation,
+    SalvaBody, SalvaBoundary, SalvaFluid, SalvaPlugin, SalvaSettings, SalvaShape, SalvaStatus,
+    runner::Simulation,
 };
-use crate::particles::FluidParticles;
+use crate::{
+    emitter::{EmitterBounds, ParticleEmitter},
+    particles::FluidParticles,
+};
 
 const FRAME: Duration = Duration::from_millis(16);
 
@@ -167,4 +171,107 @@ fn what_is_shown_moves_evenly_between_steps() {
     }
     // Steps alone would never lie between.
     assert!(between > 10, "{between}");
+}
+
+/// How many commands wait for the next job.
+fn waiting(app: &App) -> usize {
+    app.world().resource::<Simulation>().commands.len()
+}
+
+#[test]
+fn nothing_piles_up_while_time_stands_still() {
+    let mut app = app();
+    let water = drop_of_water(&mut app);
+    let plane = app.world_mut().spawn(SalvaBoundary::PLANE).id();
+    let ball = SalvaShape::Sphere { radius: 0.1 };
+    let body = app.world_mut().spawn(SalvaBody::new(ball, 500.0)).id();
+    let emitter = ParticleEmitter {
+        particle_radius: 0.05,
+        bounds: Some(EmitterBounds::default()),
+        ..default()
+    };
+    let jet = app.world_mut().spawn((emitter, SalvaFluid::WATER)).id();
+    app.world_mut().resource_mut::<SalvaSettings>().paused = true;
+    for i in 0..100 {
+        // All that can be changed is.
+        let world = app.world_mut();
+        let x = i as f32;
+        for entity in [plane, body, jet] {
+            world.get_mut::<Transform>(entity).unwrap().translation.x = x;
+        }
+        let mut body = world.get_mut::<SalvaBody>(body).unwrap();
+        body.friction = 0.01 * x;
+        body.shape = SalvaShape::Sphere {
+            radius: 0.1 + 1e-3 * x,
+        };
+        world.get_mut::<FluidParticles>(water).unwrap().positions = vec![vec3(x, 5.0, 0.0)];
+        world.get_mut::<SalvaFluid>(water).unwrap().viscosity = 1e-3 * x;
+        world.get_mut::<SalvaFluid>(jet).unwrap().viscosity = 1e-3 * x;
+        app.update();
+        assert!(waiting(&app) <= 12, "{} in update {i}", waiting(&app));
+    }
+    // And it all takes effect.
+    app.world_mut().resource_mut::<SalvaSettings>().paused = false;
+    app.update();
+    finish_job(&mut app);
+    assert!(status(&app).particles > 0 && !status(&app).stopped);
+    let at = app.world().get::<Transform>(body).unwrap().translation.x;
+    assert!((at - 99.0).abs() < 0.1, "{at}");
+}
+
+#[test]
+fn what_is_refused_is_not_tried_again() {
+    let mut app = app();
+    drop_of_water(&mut app);
+    let mut meshes = Assets::<Mesh>::default();
+    let sheet = Mesh3d(meshes.add(Plane3d::default().mesh().size(1.0, 1.0)));
+    app.insert_resource(meshes);
+    app.world_mut().spawn((SalvaBody::default(), sheet));
+    app.update();
+    app.update();
+    finish_job(&mut app);
+    let told = |app: &App| app.world().resource::<Simulation>().told;
+    let before = told(&app);
+    let refused = |app: &App| {
+        let solids = &app.world().resource::<Simulation>().solids;
+        solids.values().all(|solid| solid.refused.is_some())
+    };
+    for _ in 0..10 {
+        app.update();
+        assert!(refused(&app));
+    }
+    assert_eq!(told(&app), before);
+}
+
+#[test]
+fn nothing_piles_up_when_salva_has_panicked() {
+    let mut app = app();
+    let emitter = ParticleEmitter {
+        particle_radius: 0.05,
+        ..default()
+    };
+    let jet = app.world_mut().spawn((emitter, SalvaFluid::WATER)).id();
+    let wall = app.world_mut().spawn(SalvaBoundary::PLANE).id();
+    let panic = || panic!("as a test has it");
+    app.world_mut().resource_mut::<Simulation>().before_job = Some(Arc::new(panic));
+    let fall = |app: &mut App| {
+        let mut wall = app.world_mut().get_mut::<Transform>(wall).unwrap();
+        wall.translation.y -= 0.01;
+        app.update();
+    };
+    // A panic takes its time to be told of.
+    for _ in 0..10_000 {
+        fall(&mut app);
+        if status(&app).stopped {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(status(&app).stopped);
+    for _ in 0..10 {
+        fall(&mut app);
+    }
+    app.world_mut().despawn(jet);
+    app.update();
+    assert_eq!(waiting(&app), 0);
 }

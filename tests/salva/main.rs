@@ -2,9 +2,13 @@
 
 #![cfg(feature = "salva")]
 
+mod background;
 mod cost;
 mod coupling;
+mod edits;
 mod leaks;
 mod life;
+mod limits;
+mod meshes;
 mod pool;
 mod rest;

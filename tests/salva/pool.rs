@@ -16,18 +16,8 @@ pub(crate) const STEP: f32 = 1.0 / 120.0;
 
 /// An app in lockstep, without anything that draws.
 pub(crate) fn app() -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin::default(),
-        MeshPlugin,
-        SalvaPlugin,
-    ))
-    .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
-        STEP,
-    )))
-    .insert_resource(SalvaSettings {
+    let mut app = bare_app();
+    app.add_plugins(SalvaPlugin).insert_resource(SalvaSettings {
         mode: SalvaMode::Lockstep,
         ..default()
     });
@@ -35,6 +25,21 @@ pub(crate) fn app() -> App {
     app.cleanup();
     // The first update has no time yet.
     app.update();
+    app
+}
+
+/// The same without the plugin.
+pub(crate) fn bare_app() -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        TransformPlugin,
+        AssetPlugin::default(),
+        MeshPlugin,
+    ))
+    .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
+        STEP,
+    )));
     app
 }
 

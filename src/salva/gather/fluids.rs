@@ -11,7 +11,7 @@ use crate::{
     salva::{
         SalvaError, SalvaFluid,
         runner::Simulation,
-        world::{Command, Newborn, Substance},
+        world::{Command, Limits, Newborn, Substance},
     },
 };
 
@@ -25,6 +25,8 @@ pub(crate) struct FluidEntry {
     pub(crate) told: u64,
     /// The transform that its particles were written with.
     pub(crate) space: Affine3A,
+    /// Which of its particles it has been told to keep, if an emitter feeds it.
+    pub(crate) limits: Option<Limits>,
 }
 
 /// Two radii that are the same but for rounding in transforms.
@@ -54,11 +56,12 @@ pub(crate) fn gather_fluids(
         Option<&ParticleEmitter>,
     )>,
     mut gone: RemovedComponents<SalvaFluid>,
+    mut without_particles: RemovedComponents<FluidParticles>,
     transforms: TransformHelper,
     mut complaints: Local<Complaints>,
     mut settings_complaints: Local<Complaints>,
 ) {
-    for entity in gone.read() {
+    for entity in gone.read().chain(without_particles.read()) {
         complaints.forget(entity);
         settings_complaints.forget(entity);
         if simulation.fluids.remove(&entity).is_some() {
@@ -76,6 +79,11 @@ pub(crate) fn gather_fluids(
             if particles.radius != radius {
                 particles.radius = radius;
             }
+        } else if let Some(entry) = simulation.fluids.get_mut(&entity)
+            && entry.limits.take().is_some()
+        {
+            // What was the emitter's to limit stays now.
+            simulation.tell(Command::Limit(entity.to_bits(), Limits::default()));
         }
         let checked = simulation.take_fluid(entity, &fluid, &particles, &transforms);
         if let Some(error) = complaints.of(entity, checked) {
@@ -97,7 +105,7 @@ impl Simulation {
         let is_written = known.is_some_and(|known| known.written == particles.last_changed());
         if is_written {
             if fluid.is_changed() {
-                self.tell(Command::Fluid(id, Substance::from(&**fluid)));
+                self.tell(Command::Substance(id, Substance::from(&**fluid)));
             }
             return Ok(());
         }
@@ -121,18 +129,18 @@ impl Simulation {
         } else {
             self.tell(Command::Radius(radius));
         }
-        self.tell(Command::Fluid(id, Substance::from(&**fluid)));
         let places = particles.positions.iter();
         let newborn = Newborn {
             positions: places.map(|&place| space.transform_point3(place)).collect(),
             velocities: vec![fluid.clamped().velocity],
         };
-        let told = self.tell(Command::Replace(id, newborn));
+        let told = self.tell(Command::Fluid(id, Substance::from(&**fluid), newborn));
         let entry = FluidEntry {
             radius,
             written: particles.last_changed(),
             told,
             space,
+            limits: None,
         };
         self.fluids.insert(entity, entry);
         Ok(())

@@ -5,5 +5,5 @@ mod solids;
 
 pub(crate) use self::{
     fluids::{FluidEntry, gather_fluids},
-    solids::{SolidEntry, gather_solids},
+    solids::{SolidEntry, gather_solids, start_anew},
 };

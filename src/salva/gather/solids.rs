@@ -1,28 +1,64 @@
 //! Boundaries and bodies: new ones, changed ones, and those that have moved.
 
-use bevy::{prelude::*, transform::helper::TransformHelper};
+use bevy::{ecs::message::MessageCursor, prelude::*, transform::helper::TransformHelper};
 
 use crate::{
     complaints::Complaints,
     salva::{
         SalvaBody, SalvaBoundary, SalvaError, SalvaLoad, SalvaShape,
         runner::Simulation,
-        shape::{geometry, split},
-        world::{Command, Contact, Motion},
+        shape::{recipe, split},
+        world::{Command, Contact, Motion, Traits},
     },
 };
 
-/// What is known of a solid that is simulated.
+/// What is known of a solid that is simulated, or cannot be.
 pub(crate) struct SolidEntry {
-    mesh: Option<AssetId<Mesh>>,
-    scale: Mat3,
+    form: Form,
+    traits: Traits,
     /// Where a boundary was last, or where a body was written to be.
     pub(crate) at: Isometry3d,
     /// How many things the world must have been told to know it there.
     pub(crate) told: u64,
+    /// The same to know its shape.
+    pub(crate) made: u64,
+    /// Whether the next job is to learn of a boundary's place.
+    pub(crate) is_moved: bool,
+    /// Whether it has been inserted again.
+    is_anew: bool,
+    /// Why nothing can be made of its form: it is not tried again.
+    pub(crate) refused: Option<SalvaError>,
 }
 
-type Solids<'w, 's, T> = Query<
+/// What a solid's shape is made of.
+#[derive(Clone, Copy)]
+struct Form {
+    shape: SalvaShape,
+    mesh: Option<AssetId<Mesh>>,
+    scale: Mat3,
+    is_body: bool,
+}
+
+impl Form {
+    fn is_like(&self, other: &Self) -> bool {
+        self.shape == other.shape
+            && self.mesh == other.mesh
+            && self.is_body == other.is_body
+            && self.scale.abs_diff_eq(other.scale, 1e-4)
+    }
+}
+
+/// What is inserted again starts anew, unlike what is merely changed.
+pub(crate) fn start_anew<T: Component>(
+    inserted: On<Insert, T>,
+    mut simulation: ResMut<Simulation>,
+) {
+    if let Some(known) = simulation.solids.get_mut(&inserted.entity) {
+        known.is_anew = true;
+    }
+}
+
+type Solids<'w, 's, T, F = ()> = Query<
     'w,
     's,
     (
@@ -31,16 +67,19 @@ type Solids<'w, 's, T> = Query<
         Option<&'static Mesh3d>,
         Has<SalvaLoad>,
     ),
+    F,
 >;
 
 /// Tells of boundaries and bodies that are new, other than they were, elsewhere, or gone.
 pub(crate) fn gather_solids(
     mut simulation: ResMut<Simulation>,
-    boundaries: Solids<SalvaBoundary>,
+    boundaries: Solids<SalvaBoundary, Without<SalvaBody>>,
     bodies: Solids<SalvaBody>,
     mut gone: RemovedComponents<SalvaBoundary>,
     mut gone_bodies: RemovedComponents<SalvaBody>,
     meshes: Option<Res<Assets<Mesh>>>,
+    changes: Option<Res<Messages<AssetEvent<Mesh>>>>,
+    mut cursor: Local<MessageCursor<AssetEvent<Mesh>>>,
     transforms: TransformHelper,
     mut complaints: Local<Complaints>,
     mut settings_complaints: Local<Complaints>,
@@ -58,6 +97,13 @@ pub(crate) fn gather_solids(
             warn!("boundary {entity}: {error}");
         }
     }
+    if let Some(changes) = changes {
+        for change in cursor.read(&changes) {
+            if let AssetEvent::Modified { id } = change {
+                simulation.try_again(*id);
+            }
+        }
+    }
     let meshes = meshes.as_deref();
     for (entity, boundary, mesh, feels) in &boundaries {
         if boundary.is_changed()
@@ -66,17 +112,15 @@ pub(crate) fn gather_solids(
             warn!("boundary {entity}: {error}; it is simulated with the nearest that makes sense");
         }
         let own = boundary.clamped();
-        let solid = NewSolid {
-            shape: own.shape,
+        let traits = Traits {
             motion: Motion::Kinematic,
             contact: Contact {
                 friction: own.friction,
                 restitution: own.restitution,
             },
             feels,
-            is_new: boundary.is_changed(),
         };
-        let checked = simulation.take_solid(entity, solid, mesh, meshes, &transforms);
+        let checked = simulation.take_solid(entity, own.shape, traits, mesh, meshes, &transforms);
         if let Some(error) = complaints.of(entity, checked) {
             warn!("boundary {entity} is not simulated: {error}");
         }
@@ -88,8 +132,7 @@ pub(crate) fn gather_solids(
             warn!("body {entity}: {error}; it is simulated with the nearest that makes sense");
         }
         let own = body.clamped();
-        let solid = NewSolid {
-            shape: own.shape,
+        let traits = Traits {
             motion: Motion::Dynamic {
                 density: own.density,
                 velocity: own.velocity,
@@ -100,83 +143,128 @@ pub(crate) fn gather_solids(
                 restitution: own.restitution,
             },
             feels,
-            is_new: body.is_changed(),
         };
-        let checked = simulation.take_solid(entity, solid, mesh, meshes, &transforms);
+        let checked = simulation.take_solid(entity, own.shape, traits, mesh, meshes, &transforms);
         if let Some(error) = complaints.of(entity, checked) {
             warn!("body {entity} is not simulated: {error}");
         }
     }
 }
 
-struct NewSolid {
-    shape: SalvaShape,
-    motion: Motion,
-    contact: Contact,
-    feels: bool,
-    is_new: bool,
-}
-
 impl Simulation {
+    /// What was refused for a mesh that has become another.
+    fn try_again(&mut self, mesh: AssetId<Mesh>) {
+        for known in self.solids.values_mut() {
+            known.is_anew |= known.refused.is_some() && known.form.mesh == Some(mesh);
+        }
+    }
+
     fn take_solid(
         &mut self,
         entity: Entity,
-        new: NewSolid,
+        shape: SalvaShape,
+        traits: Traits,
         mesh: Option<&Mesh3d>,
         meshes: Option<&Assets<Mesh>>,
         transforms: &TransformHelper,
     ) -> Result<(), SalvaError> {
-        let id = entity.to_bits();
         let transform = transforms.compute_global_transform(entity);
         let (at, scale) = split(&transform.map_err(|_| SalvaError::Transform)?)?;
-        let is_mesh = new.shape == SalvaShape::Mesh;
-        let mesh_id = mesh.filter(|_| is_mesh).map(|mesh| mesh.0.id());
-        if let Some(known) = self.solids.get_mut(&entity)
-            && !new.is_new
-            && known.mesh == mesh_id
-            && known.scale.abs_diff_eq(scale, 1e-4)
-        {
-            if known.at == at {
-                return Ok(());
-            }
-            known.at = at;
-            if matches!(new.motion, Motion::Kinematic) {
-                self.tell(Command::Move(id, at));
-            } else {
-                let told = self.tell(Command::Jump(id, at));
-                if let Some(known) = self.solids.get_mut(&entity) {
-                    known.told = told;
-                }
-            }
-            return Ok(());
+        let is_mesh = shape == SalvaShape::Mesh;
+        let form = Form {
+            shape,
+            mesh: mesh.filter(|_| is_mesh).map(|mesh| mesh.0.id()),
+            scale,
+            is_body: traits.motion != Motion::Kinematic,
+        };
+        let known = self.solids.get(&entity).filter(|known| !known.is_anew);
+        if known.is_some_and(|known| known.form.is_like(&form)) {
+            return self.go_on(entity, traits, at);
         }
-        let data = mesh_id.and_then(|id| meshes?.get(id));
-        if mesh_id.is_some() && data.is_none() {
+        let data = form.mesh.and_then(|id| meshes?.get(id));
+        if form.mesh.is_some() && data.is_none() {
             // It may still be loading.
             return Ok(());
         }
-        let is_body = !matches!(new.motion, Motion::Kinematic);
-        let geometry = geometry(new.shape, scale, data, is_body);
-        let geometry = geometry.inspect_err(|_| {
-            if self.solids.remove(&entity).is_some() {
-                self.tell(Command::RemoveSolid(id));
-            }
-        })?;
-        let told = self.tell(Command::Solid {
-            id,
-            geometry,
-            motion: new.motion,
-            contact: new.contact,
-            at,
-            feels: new.feels,
+        // A body of another shape or size keeps its motion, unless it is put elsewhere too.
+        let goes_on = known.filter(|known| {
+            let is_there = known.refused.is_none() && known.told <= self.sent;
+            is_there && form.is_body && is_near(known.at, at)
         });
-        let entry = SolidEntry {
-            mesh: mesh_id,
-            scale,
-            at,
-            told,
+        let told_before = goes_on.map(|known| known.told);
+        self.make(entity, form, data, traits, at, told_before)
+    }
+
+    /// A solid whose form has not changed.
+    fn go_on(&mut self, entity: Entity, traits: Traits, at: Isometry3d) -> Result<(), SalvaError> {
+        let id = entity.to_bits();
+        let Some(known) = self.solids.get_mut(&entity) else {
+            return Ok(());
         };
-        self.solids.insert(entity, entry);
+        if let Some(error) = known.refused {
+            return Err(error);
+        }
+        let is_moved = known.at != at;
+        known.at = at;
+        known.is_moved |= is_moved && !known.form.is_body;
+        let jumps = is_moved && known.form.is_body;
+        if core::mem::replace(&mut known.traits, traits) != traits {
+            self.tell(Command::Alter(id, traits));
+        }
+        if jumps {
+            let told = self.tell(Command::Jump(id, at));
+            if let Some(known) = self.solids.get_mut(&entity) {
+                known.told = told;
+            }
+        }
         Ok(())
     }
+
+    /// Tells of a solid of a new form. `told_before` is what was told of its place, if it goes on.
+    fn make(
+        &mut self,
+        entity: Entity,
+        form: Form,
+        mesh: Option<&Mesh>,
+        traits: Traits,
+        at: Isometry3d,
+        told_before: Option<u64>,
+    ) -> Result<(), SalvaError> {
+        let id = entity.to_bits();
+        let recipe = recipe(form.shape, form.scale, mesh, form.is_body);
+        let refused = recipe.as_ref().err().copied();
+        let command = match recipe {
+            Ok(recipe) => Some(Command::Solid {
+                id,
+                recipe,
+                traits,
+                at,
+                goes_on: told_before.is_some(),
+            }),
+            // There may be an older form of it.
+            Err(_) => self
+                .solids
+                .get(&entity)
+                .filter(|known| known.refused.is_none())
+                .map(|_| Command::RemoveSolid(id)),
+        };
+        let made = command.map_or(self.told, |command| self.tell(command));
+        let entry = SolidEntry {
+            form,
+            traits,
+            at,
+            told: told_before.unwrap_or(made),
+            made,
+            is_moved: false,
+            is_anew: false,
+            refused,
+        };
+        self.solids.insert(entity, entry);
+        refused.map_or(Ok(()), Err)
+    }
+}
+
+/// Two places that are the same but for rounding when a scale is taken out.
+fn is_near(a: Isometry3d, b: Isometry3d) -> bool {
+    a.translation == b.translation && a.rotation.abs_diff_eq(b.rotation, 1e-4)
 }

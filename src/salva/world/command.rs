@@ -5,32 +5,33 @@ use std::time::Duration;
 use bevy::prelude::*;
 
 use super::{
-    Contact, Geometry, Id, Limits, Liquid, Motion, Newborn, Solid, Substance, World,
-    new_liquid_world,
+    Id, Limits, Liquid, Newborn, Recipe, Solid, Substance, Traits, World, new_liquid_world,
 };
 
 /// A change from outside.
 pub(crate) enum Command {
     /// From now on every particle has this radius (m).
     Radius(f32),
-    /// A fluid is new, or of another substance.
-    Fluid(Id, Substance),
-    /// These are all particles of the fluid.
-    Replace(Id, Newborn),
+    /// These are all particles of a fluid, which may be new.
+    Fluid(Id, Substance, Newborn),
+    /// A fluid is of another substance.
+    Substance(Id, Substance),
     /// These particles are added to the fluid where there is room for them.
     Add(Id, Newborn),
     /// Which particles of the fluid stay.
     Limit(Id, Limits),
     RemoveFluid(Id),
-    /// A solid is new, or another than it was.
+    /// A solid is new, or of another shape.
     Solid {
         id: Id,
-        geometry: Geometry,
-        motion: Motion,
-        contact: Contact,
+        recipe: Recipe,
+        traits: Traits,
         at: Isometry3d,
-        feels: bool,
+        /// Whether a body keeps its place and its motion.
+        goes_on: bool,
     },
+    /// A solid of the same shape has other traits.
+    Alter(Id, Traits),
     /// Where a kinematic solid is to be at the end of the job.
     Move(Id, Isometry3d),
     /// Where a solid is at once.
@@ -66,33 +67,81 @@ pub(crate) struct Report {
     pub(crate) broken: usize,
     /// Solids whose surface takes too many particles.
     pub(crate) unsampled: Vec<Id>,
+    /// Solids that nothing could be made of.
+    pub(crate) unmade: Vec<Id>,
+}
+
+impl Command {
+    /// Joins those that wait, and takes out what it makes needless: while time stands still, they
+    /// would become ever more.
+    pub(crate) fn join(self, waiting: &mut Vec<Self>) {
+        waiting.retain(|old| !self.replaces(old));
+        waiting.push(self);
+    }
+
+    fn replaces(&self, old: &Self) -> bool {
+        match (self, old) {
+            (Self::Radius(_), Self::Radius(_)) => true,
+            (Self::Substance(id, _), Self::Substance(other, _))
+            | (Self::Limit(id, _), Self::Limit(other, _))
+            | (Self::Alter(id, _), Self::Alter(other, _))
+            | (Self::Move(id, _), Self::Move(other, _))
+            | (Self::Jump(id, _), Self::Jump(other, _)) => id == other,
+            (Self::RemoveFluid(id), old) => old.fluid() == Some(*id),
+            (Self::Solid { id, .. } | Self::RemoveSolid(id), old) => old.solid() == Some(*id),
+            _ => false,
+        }
+    }
+
+    fn fluid(&self) -> Option<Id> {
+        match self {
+            Self::Fluid(id, ..)
+            | Self::Substance(id, _)
+            | Self::Add(id, _)
+            | Self::Limit(id, _)
+            | Self::RemoveFluid(id) => Some(*id),
+            _ => None,
+        }
+    }
+
+    fn solid(&self) -> Option<Id> {
+        match self {
+            Self::Solid { id, .. }
+            | Self::Alter(id, _)
+            | Self::Move(id, _)
+            | Self::Jump(id, _)
+            | Self::RemoveSolid(id) => Some(*id),
+            _ => None,
+        }
+    }
 }
 
 impl World {
-    /// Applies `commands` in their order.
-    pub(crate) fn apply(&mut self, commands: impl IntoIterator<Item = Command>) {
+    /// Applies `commands` in their order, with which it has been `told` so many.
+    pub(crate) fn apply(&mut self, commands: impl IntoIterator<Item = Command>, told: u64) {
         for command in commands {
             self.apply_one(command);
-            self.applied += 1;
         }
+        self.applied = told;
     }
 
     fn apply_one(&mut self, command: Command) {
         match command {
             Command::Radius(radius) => self.set_radius(radius),
-            Command::Fluid(id, substance) => {
+            Command::Fluid(id, substance, particles) => {
                 let liquid = self.liquids.entry(id).or_insert_with(|| {
                     let free = self.free.pop();
                     free.unwrap_or_else(|| Liquid::new(&mut self.liquid_world, &substance))
                 });
-                liquid.set_substance(&mut self.liquid_world, &substance);
+                let world = &mut self.liquid_world;
+                liquid.set_substance(world, &substance);
+                liquid.remove_all(world);
+                self.report.broken += liquid.add(world, &particles, self.time);
+                liquid.is_fresh = true;
             }
-            Command::Replace(id, particles) => {
-                if let Some(liquid) = self.liquids.get_mut(&id) {
-                    liquid.remove_all(&mut self.liquid_world);
-                    let world = &mut self.liquid_world;
-                    self.report.broken += liquid.add(world, &particles, self.time);
-                    liquid.is_fresh = true;
+            Command::Substance(id, substance) => {
+                if let Some(liquid) = self.liquids.get(&id) {
+                    liquid.set_substance(&mut self.liquid_world, &substance);
                 }
             }
             Command::Add(id, particles) => {
@@ -115,21 +164,31 @@ impl World {
             }
             Command::Solid {
                 id,
-                geometry,
-                motion,
-                contact,
+                recipe,
+                traits,
                 at,
-                feels,
+                goes_on,
             } => {
-                self.remove_solid(id);
+                let before = self.solids.remove(&id);
+                let before = before.inspect(|solid| self.take_out_solid(solid));
+                let Some(geometry) = recipe.make() else {
+                    self.report.unmade.push(id);
+                    return;
+                };
                 let (rigid_world, liquid_world) = (&mut self.rigid_world, &mut self.liquid_world);
-                let mut solid =
-                    Solid::new(rigid_world, liquid_world, geometry, motion, contact, at);
-                solid.feels |= feels;
+                let mut solid = Solid::new(rigid_world, liquid_world, geometry, traits, at);
+                if let Some(before) = before.filter(|_| goes_on) {
+                    solid.go_on(rigid_world, &before);
+                }
                 if !solid.sample(self.liquid_world.particle_radius()) {
                     self.report.unsampled.push(id);
                 }
                 self.solids.insert(id, solid);
+            }
+            Command::Alter(id, traits) => {
+                if let Some(solid) = self.solids.get_mut(&id) {
+                    solid.alter(&mut self.rigid_world, traits);
+                }
             }
             Command::Move(id, at) => {
                 if let Some(solid) = self.solids.get_mut(&id) {
@@ -141,7 +200,11 @@ impl World {
                     solid.jump(&mut self.rigid_world, at);
                 }
             }
-            Command::RemoveSolid(id) => self.remove_solid(id),
+            Command::RemoveSolid(id) => {
+                if let Some(solid) = self.solids.remove(&id) {
+                    self.take_out_solid(&solid);
+                }
+            }
         }
     }
 
@@ -160,10 +223,8 @@ impl World {
         }
     }
 
-    fn remove_solid(&mut self, id: Id) {
-        if let Some(solid) = self.solids.remove(&id) {
-            self.liquid_world.remove_boundary(solid.boundary);
-            self.rigid_world.remove_body(solid.body);
-        }
+    fn take_out_solid(&mut self, solid: &Solid) {
+        self.liquid_world.remove_boundary(solid.boundary);
+        self.rigid_world.remove_body(solid.body);
     }
 }

@@ -16,6 +16,8 @@ use super::{
 const SEGMENTS: u32 = 32;
 /// Thickness of a tank's walls for bodies, over its largest side.
 const TANK_WALLS: f32 = 0.25;
+/// Hulls thinner than this, over their size, have no volume beyond rounding.
+const THINNEST: f32 = 1e-5;
 
 /// The shape of a solid in its own frame, scaled.
 #[derive(Clone)]
@@ -25,6 +27,26 @@ pub(crate) struct Geometry {
     pub(crate) shell: SharedShape,
     /// What bodies meet.
     pub(crate) collider: SharedShape,
+}
+
+/// What a geometry is made of. Meshes may take long: they become one in a job.
+pub(crate) enum Recipe {
+    Made(Geometry),
+    /// A surface with liquid where its faces look.
+    Mesh(Vec<Triangle>),
+    /// What the convex hull is about.
+    Hull(Vec<Triangle>),
+}
+
+impl Recipe {
+    /// None where a mesh has no face, or a hull no volume.
+    pub(crate) fn make(self) -> Option<Geometry> {
+        match self {
+            Self::Made(geometry) => Some(geometry),
+            Self::Mesh(faces) => Geometry::mesh(faces),
+            Self::Hull(faces) => Geometry::hull(&faces),
+        }
+    }
 }
 
 /// What is sampled.
@@ -114,7 +136,7 @@ impl Geometry {
     }
 
     /// A surface with liquid where its faces look. None where there is no face.
-    pub(crate) fn mesh(faces: Vec<Triangle>) -> Option<Self> {
+    fn mesh(faces: Vec<Triangle>) -> Option<Self> {
         let shell = shell(&faces)?;
         Some(Self {
             surface: Surface::Triangles(faces),
@@ -124,15 +146,19 @@ impl Geometry {
     }
 
     /// The convex hull of a surface. None where that has no volume.
-    pub(crate) fn hull(faces: &[Triangle]) -> Option<Self> {
+    fn hull(faces: &[Triangle]) -> Option<Self> {
         let points: Vec<_> = faces.iter().flatten().copied().map(rigid).collect();
         if points.len() < 4 || points.iter().any(|point| !point.is_finite()) {
             return None;
         }
         let shape = SharedShape::convex_hull(&points)?;
-        let hull = shape.as_convex_polyhedron()?.to_trimesh();
+        let hull = triangles(shape.as_convex_polyhedron()?.to_trimesh());
+        // Of points in a plane it has two sides, but nothing between.
+        if !has_volume(&hull) {
+            return None;
+        }
         Some(Self {
-            surface: from_mesh(hull),
+            surface: Surface::Triangles(hull),
             shell: shape.clone(),
             collider: shape,
         })
@@ -155,6 +181,20 @@ fn from_mesh(mesh: (Vec<RigidVector>, Vec<[u32; 3]>)) -> Surface {
 fn triangles((corners, faces): (Vec<RigidVector>, Vec<[u32; 3]>)) -> Vec<Triangle> {
     let corner = |index: u32| from_rigid(corners[index as usize]);
     faces.into_iter().map(|face| face.map(corner)).collect()
+}
+
+fn has_volume(closed: &[Triangle]) -> bool {
+    let Some([origin, ..]) = closed.first() else {
+        return false;
+    };
+    let (mut volume, mut area, mut size) = (0.0, 0.0, 0.0_f32);
+    for [a, b, c] in closed {
+        let [a, b, c] = [a, b, c].map(|corner| corner - origin);
+        volume += a.dot(b.cross(c)) / 6.0;
+        area += 0.5 * (b - a).cross(c - a).length();
+        size = size.max(a.length());
+    }
+    volume.abs() > THINNEST * size * area
 }
 
 fn shell(faces: &[Triangle]) -> Option<SharedShape> {

@@ -22,10 +22,10 @@ use salva3d::{LiquidWorld, rapier::pipeline::PhysicsWorld, solver::IISPHSolver};
 pub(crate) use self::{
     command::{Command, Job, Report},
     frame::{Frame, blend},
-    geometry::Geometry,
+    geometry::{Geometry, Recipe},
     liquid::{Limits, Newborn, Substance},
     sampling::Triangle,
-    solid::{Contact, Motion},
+    solid::{Contact, Motion, Traits},
 };
 use self::{
     convert::{LiquidVector, from_liquid},
@@ -61,7 +61,7 @@ pub(crate) struct World {
     /// m/s, the fastest particle of the last step.
     fastest: f32,
     time: f64,
-    /// Commands applied so far.
+    /// Commands given so far.
     applied: u64,
     report: Report,
 }

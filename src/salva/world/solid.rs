@@ -5,7 +5,7 @@ use salva3d::{
     LiquidWorld,
     object::{Boundary, BoundaryHandle, interaction_groups::InteractionGroups},
     rapier::{
-        dynamics::{RigidBodyBuilder, RigidBodyHandle},
+        dynamics::{RigidBody, RigidBodyBuilder, RigidBodyHandle},
         geometry::ColliderBuilder,
         pipeline::PhysicsWorld,
     },
@@ -35,6 +35,36 @@ pub(crate) enum Motion {
 pub(crate) struct Contact {
     pub(crate) friction: f32,
     pub(crate) restitution: f32,
+}
+
+/// What may change while a solid goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Traits {
+    pub(crate) motion: Motion,
+    pub(crate) contact: Contact,
+    /// Whether what liquid does to it is wanted.
+    pub(crate) feels: bool,
+}
+
+impl Motion {
+    /// A body's velocity and angular velocity.
+    fn start(&self) -> Option<[Vec3; 2]> {
+        match *self {
+            Self::Kinematic => None,
+            Self::Dynamic {
+                velocity,
+                angular_velocity,
+                ..
+            } => Some([velocity, angular_velocity]),
+        }
+    }
+
+    fn density(&self) -> f32 {
+        match *self {
+            Self::Kinematic => 0.0,
+            Self::Dynamic { density, .. } => density,
+        }
+    }
 }
 
 /// A solid in both worlds.
@@ -68,29 +98,25 @@ impl Solid {
         rigid_world: &mut PhysicsWorld,
         liquid_world: &mut LiquidWorld,
         geometry: Geometry,
-        motion: Motion,
-        contact: Contact,
+        traits: Traits,
         at: Isometry3d,
     ) -> Self {
-        let builder = match motion {
-            Motion::Kinematic => RigidBodyBuilder::kinematic_position_based(),
-            Motion::Dynamic {
-                velocity,
-                angular_velocity,
-                ..
-            } => RigidBodyBuilder::dynamic()
+        let Traits {
+            motion,
+            contact,
+            feels,
+        } = traits;
+        let builder = match motion.start() {
+            None => RigidBodyBuilder::kinematic_position_based(),
+            Some([velocity, angular_velocity]) => RigidBodyBuilder::dynamic()
                 .linvel(rigid(velocity))
                 .angvel(rigid(angular_velocity))
                 // Liquid below would not wake it.
                 .can_sleep(false)
                 .ccd_enabled(true),
         };
-        let density = match motion {
-            Motion::Kinematic => 0.0,
-            Motion::Dynamic { density, .. } => density,
-        };
         let collider = ColliderBuilder::new(geometry.collider.clone())
-            .density(density)
+            .density(motion.density())
             .friction(contact.friction)
             .restitution(contact.restitution);
         let (body, _) = rigid_world.insert(builder.pose(pose(at)), collider);
@@ -111,7 +137,7 @@ impl Solid {
             velocity: Vec3::ZERO,
             angular_velocity: Vec3::ZERO,
             center: at.translation.into(),
-            feels: matches!(motion, Motion::Dynamic { .. }),
+            feels: feels || motion.start().is_some(),
             push: Vec3::ZERO,
             turn: Vec3::ZERO,
             pushed: Vec3::ZERO,
@@ -123,6 +149,43 @@ impl Solid {
 
     pub(crate) fn is_dynamic(&self) -> bool {
         matches!(self.motion, Motion::Dynamic { .. })
+    }
+
+    /// Takes other traits on in its motion. Only a start velocity that is another than it was is
+    /// given to it.
+    pub(crate) fn alter(&mut self, rigid_world: &mut PhysicsWorld, traits: Traits) {
+        let start = traits.motion.start();
+        if let Some(body) = rigid_world.bodies.get_mut(self.body) {
+            for collider in body.colliders() {
+                if let Some(collider) = rigid_world.colliders.get_mut(*collider) {
+                    collider.set_density(traits.motion.density());
+                    collider.set_friction(traits.contact.friction);
+                    collider.set_restitution(traits.contact.restitution);
+                }
+            }
+            body.recompute_mass_properties_from_colliders(&rigid_world.colliders);
+            if let Some(start) = start.filter(|_| start != self.motion.start()) {
+                set_velocities(body, start);
+            }
+        }
+        self.motion = traits.motion;
+        self.feels = traits.feels || start.is_some();
+        self.read_body(rigid_world);
+    }
+
+    /// A body goes on where one of another shape was, as that moved.
+    pub(crate) fn go_on(&mut self, rigid_world: &mut PhysicsWorld, before: &Self) {
+        if !(self.is_dynamic() && before.is_dynamic()) {
+            return;
+        }
+        (self.before, self.at, self.target) = (before.at, before.at, before.at);
+        if let Some(body) = rigid_world.bodies.get_mut(self.body) {
+            body.set_position(pose(before.at), true);
+            if self.motion.start() == before.motion.start() {
+                set_velocities(body, [before.velocity, before.angular_velocity]);
+            }
+        }
+        self.read_body(rigid_world);
     }
 
     /// Samples the surface for particles of `radius`; false where that would be too many.
@@ -149,11 +212,12 @@ impl Solid {
     /// At once, without a velocity.
     pub(crate) fn jump(&mut self, rigid_world: &mut PhysicsWorld, at: Isometry3d) {
         (self.before, self.at, self.target) = (at, at, at);
+        (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
+        self.center = at.translation.into();
         if let Some(body) = rigid_world.bodies.get_mut(self.body) {
             body.set_position(pose(at), true);
             if self.is_dynamic() {
-                body.set_linvel(rigid(Vec3::ZERO), true);
-                body.set_angvel(rigid(Vec3::ZERO), true);
+                set_velocities(body, [Vec3::ZERO; 2]);
             }
         }
         self.read_body(rigid_world);
@@ -246,5 +310,49 @@ impl Solid {
     /// World-space velocity of the solid at a world-space `place`.
     pub(crate) fn velocity_at(&self, place: Vec3) -> Vec3 {
         self.velocity + self.angular_velocity.cross(place - self.center)
+    }
+}
+
+fn set_velocities(body: &mut RigidBody, [velocity, angular_velocity]: [Vec3; 2]) {
+    body.set_linvel(rigid(velocity), true);
+    body.set_angvel(rigid(angular_velocity), true);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_altered_body_has_another_mass_and_the_same_motion() {
+        let mut rigid_world = PhysicsWorld::new();
+        let mut liquid_world = super::super::new_liquid_world(0.05);
+        let traits = |density: f32, x: f32| Traits {
+            motion: Motion::Dynamic {
+                density,
+                velocity: Vec3::X * x,
+                angular_velocity: Vec3::ZERO,
+            },
+            contact: Contact {
+                friction: 0.5,
+                restitution: 0.0,
+            },
+            feels: false,
+        };
+        let mut solid = Solid::new(
+            &mut rigid_world,
+            &mut liquid_world,
+            Geometry::cuboid(Vec3::splat(0.5)),
+            traits(100.0, 1.0),
+            Isometry3d::IDENTITY,
+        );
+        let mass = |world: &PhysicsWorld, solid: &Solid| world.bodies[solid.body].mass();
+        assert!((mass(&rigid_world, &solid) - 100.0).abs() < 1e-3);
+        // It has been pushed since.
+        set_velocities(&mut rigid_world.bodies[solid.body], [Vec3::Y, Vec3::Z]);
+        solid.alter(&mut rigid_world, traits(300.0, 1.0));
+        assert!((mass(&rigid_world, &solid) - 300.0).abs() < 1e-3);
+        assert_eq!([solid.velocity, solid.angular_velocity], [Vec3::Y, Vec3::Z]);
+        solid.alter(&mut rigid_world, traits(300.0, 2.0));
+        assert_eq!(solid.velocity, Vec3::X * 2.0);
     }
 }

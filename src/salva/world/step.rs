@@ -26,6 +26,10 @@ impl World {
         let total = job.steps as f32 * job.step;
         for solid in self.solids.values_mut() {
             solid.head_for_target(total);
+            // So fast it would only sweep particles out of the world.
+            if !solid.is_dynamic() && solid.velocity.length() > job.max_speed {
+                solid.jump(&mut self.rigid_world, solid.target);
+            }
             (solid.pushed, solid.turned) = (Vec3::ZERO, Vec3::ZERO);
         }
         let mut left = total;
