@@ -150,6 +150,31 @@ impl ParticleEmitter {
         queued: 0,
     };
 
+    /// A garden hose along the entity's forward direction (−z).
+    pub const JET: Self = Self::jet(4000.0, 4.0);
+    /// A jet upwards that rises about 1.3 m, opens and falls back.
+    pub const FOUNTAIN: Self = Self::fountain(4000.0, 5.0);
+    /// Drops that fall from a disc a metre wide.
+    pub const SHOWER: Self = Self::shower(2000.0, 0.5);
+    /// A fan of fine drops around the entity's forward direction (−z), which the air slows down.
+    pub const SPRAY: Self = Self {
+        spread: 0.5,
+        nozzle: 0.01,
+        particle_radius: 0.008,
+        drag: 1.0,
+        ..Self::jet(6000.0, 6.0)
+    };
+    /// A tap that is not quite shut: a drop falls every half second.
+    pub const DRIP: Self = Self {
+        rate: 2.0,
+        speed: 0.0,
+        direction: Vec3::NEG_Y,
+        spread: 0.0,
+        nozzle: 0.0,
+        jitter: 0.0,
+        ..Self::DEFAULT
+    };
+
     /// A narrow jet along the entity's forward direction (−z), as `Transform::looking_at` aims it:
     /// so many particles per second, so fast (m/s).
     pub const fn jet(rate: f32, speed: f32) -> Self {
