@@ -40,6 +40,8 @@ use bevy::{
     render::diagnostic::RenderDiagnosticsPlugin,
 };
 
+#[cfg(feature = "recordings")]
+use crate::recording::LoadedFrames;
 use crate::{EmittedParticles, FluidSystems, ShapedFluid, shape::ShapeTimes};
 
 /// Particles of all fluids, dropped ones included.
@@ -139,11 +141,8 @@ fn measure_emitters(emitters: Query<&EmittedParticles>, mut diagnostics: Diagnos
 }
 
 #[cfg(feature = "recordings")]
-fn measure_recordings(
-    players: Query<&crate::recording::LoadedFrames>,
-    mut diagnostics: Diagnostics,
-) {
-    let count: usize = players.iter().map(|frames| frames.held()).sum();
+fn measure_recordings(players: Query<&LoadedFrames>, mut diagnostics: Diagnostics) {
+    let count: usize = players.iter().map(LoadedFrames::held).sum();
     diagnostics.add_measurement(&CACHED_FRAMES, || count as f64);
 }
 
