@@ -175,7 +175,12 @@ fn what_cannot_be_written_is_said_once() {
         ("age_without_number.xyz", "age_without_number.xyz"),
         ("age_#.doc", "age_#.doc"),
     ] {
-        let (mut app, entity) = recorded(&folder, writer(&folder, name), 0.1);
+        // So that nothing is said of a slow machine.
+        let patient = RecordingWriter {
+            queue: 1000,
+            ..writer(&folder, name)
+        };
+        let (mut app, entity) = recorded(&folder, patient, 0.1);
         wait(&mut app, |world| {
             world
                 .get::<WrittenFrames>(entity)
