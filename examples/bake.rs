@@ -10,7 +10,10 @@ use std::{fs, path::PathBuf, process::ExitCode};
 
 use bevy::prelude::*;
 use clap::{Parser, ValueEnum};
-use fluid_stage::simulation::{Simulation, dam, lattice};
+use fluid_stage::{
+    parse_args,
+    simulation::{Simulation, dam, lattice},
+};
 
 /// Particle radius, m.
 const RADIUS: f32 = 0.025;
@@ -59,7 +62,7 @@ impl Scene {
 }
 
 fn main() -> ExitCode {
-    let args = Args::parse();
+    let args: Args = parse_args();
     let mut simulation = args.scene.start();
     println!("{} particles", simulation.positions().len());
     for frame in 1..=args.frames {

@@ -32,7 +32,7 @@ use bevy_fluid::{
 };
 use clap::Parser;
 use fluid_stage::{
-    PendingPicture, StagePlugins, VIEW_SIZE, capture, headless_app,
+    PendingPicture, StagePlugins, VIEW_SIZE, capture, headless_app, parse_args,
     scenery::{Scenery, frame_camera, orbit_camera},
     set_time_step, settle,
     simulation::{Simulation, dam},
@@ -93,7 +93,7 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    let args = Args::parse();
+    let args: Args = parse_args();
     run(args).unwrap_or_else(|error| {
         eprintln!("{error}");
         ExitCode::from(2)

@@ -22,7 +22,13 @@
 //! | `fluid/bulk`, `fluid/interior`, `fluid/spray` | | particles of each class |
 //! | `fluid/dropped` | | particles whose position is not finite |
 //! | `fluid/shape/grid`, `…/classify`, `…/anisotropy`, `…/total` | ms | CPU time of the frame's shaping; 0 where nothing was shaped |
-//! | `render/<pass>/elapsed_gpu` | ms | GPU time of a pass in [`PASSES`], all cameras |
+//! | `fluid/emitted` | | particles that emitters have out, those that something else moves left out |
+//! | `fluid/recording/cached` | | frames that players hold, loading ones included; feature `recordings` |
+//! | `fluid/salva/particles` | | particles that are simulated live; feature `salva`, with `SalvaPlugin` |
+//! | `fluid/salva/step` | ms | CPU time of one of its steps, on its own threads |
+//! | `rain/bake_progress` | | how much of the rain's textures is drawn, 0 to 1; kept by `RainPlugin` alone |
+//! | `rain/bake_time` | ms | how long it took to draw all of them; likewise |
+//! | `render/<pass>/elapsed_gpu` | ms | GPU time of a pass in [`PASSES`] or [`RAIN_PASSES`], all cameras |
 //! | `render/<pass>/elapsed_cpu` | ms | CPU time of recording it |
 //!
 //! The passes' times come from Bevy's [`RenderDiagnosticsPlugin`], which is added where it is
@@ -34,7 +40,9 @@ use bevy::{
     render::diagnostic::RenderDiagnosticsPlugin,
 };
 
-use crate::{FluidSystems, ShapedFluid, shape::ShapeTimes};
+#[cfg(feature = "recordings")]
+use crate::recording::LoadedFrames;
+use crate::{EmittedParticles, FluidSystems, ShapedFluid, shape::ShapeTimes};
 
 /// Particles of all fluids, dropped ones included.
 pub const PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/particles");
@@ -54,6 +62,17 @@ pub const SHAPE_CLASSIFY: DiagnosticPath = DiagnosticPath::const_new("fluid/shap
 pub const SHAPE_ANISOTROPY: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/anisotropy");
 /// All of the shaping. Unit: ms.
 pub const SHAPE_TOTAL: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/total");
+/// Particles that emitters have out.
+pub const EMITTED: DiagnosticPath = DiagnosticPath::const_new("fluid/emitted");
+/// Frames that players hold, loading ones included.
+#[cfg(feature = "recordings")]
+pub const CACHED_FRAMES: DiagnosticPath = DiagnosticPath::const_new("fluid/recording/cached");
+/// Particles that are simulated live.
+#[cfg(feature = "salva")]
+pub const SALVA_PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/particles");
+/// One step of live simulation, on its own threads. Unit: ms.
+#[cfg(feature = "salva")]
+pub const SALVA_STEP: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/step");
 
 /// The passes in their order, by the names of their time spans.
 pub const PASSES: [&str; 7] = [
@@ -65,6 +84,10 @@ pub const PASSES: [&str; 7] = [
     "fluid_refract",
     "fluid_composite",
 ];
+
+/// The passes with rain in them: the copy of the scene's depth, which is rain's alone, and Bevy's
+/// own pass for all that is transparent, in which rain is drawn.
+pub const RAIN_PASSES: [&str; 2] = ["rain_scene_depth", "main_transparent_pass_3d"];
 
 /// Where the GPU time of a pass is kept. Unit: ms.
 pub fn gpu_time(pass: &str) -> DiagnosticPath {
@@ -86,14 +109,50 @@ impl Plugin for FluidDiagnosticsPlugin {
         if !app.is_plugin_added::<RenderDiagnosticsPlugin>() {
             app.add_plugins(RenderDiagnosticsPlugin);
         }
-        for count in [PARTICLES, BULK, INTERIOR, SPRAY, DROPPED] {
-            app.register_diagnostic(Diagnostic::new(count).with_smoothing_factor(0.0));
+        for path in [PARTICLES, BULK, INTERIOR, SPRAY, DROPPED, EMITTED] {
+            app.register_diagnostic(count(path));
         }
-        for time in [SHAPE_GRID, SHAPE_CLASSIFY, SHAPE_ANISOTROPY, SHAPE_TOTAL] {
-            app.register_diagnostic(Diagnostic::new(time).with_suffix(" ms"));
+        for path in [SHAPE_GRID, SHAPE_CLASSIFY, SHAPE_ANISOTROPY, SHAPE_TOTAL] {
+            app.register_diagnostic(time(path));
         }
-        app.add_systems(PostUpdate, measure.after(FluidSystems::Shape));
+        let measured = FluidSystems::Shape;
+        app.add_systems(PostUpdate, (measure, measure_emitters).after(measured));
+        #[cfg(feature = "recordings")]
+        app.register_diagnostic(count(CACHED_FRAMES))
+            .add_systems(PostUpdate, measure_recordings.after(measured));
+        #[cfg(feature = "salva")]
+        app.register_diagnostic(count(SALVA_PARTICLES))
+            .register_diagnostic(time(SALVA_STEP))
+            .add_systems(PostUpdate, measure_salva.after(measured));
     }
+}
+
+fn count(path: DiagnosticPath) -> Diagnostic {
+    Diagnostic::new(path).with_smoothing_factor(0.0)
+}
+
+fn time(path: DiagnosticPath) -> Diagnostic {
+    Diagnostic::new(path).with_suffix(" ms")
+}
+
+fn measure_emitters(emitters: Query<&EmittedParticles>, mut diagnostics: Diagnostics) {
+    let count: usize = emitters.iter().map(EmittedParticles::len).sum();
+    diagnostics.add_measurement(&EMITTED, || count as f64);
+}
+
+#[cfg(feature = "recordings")]
+fn measure_recordings(players: Query<&LoadedFrames>, mut diagnostics: Diagnostics) {
+    let count: usize = players.iter().map(LoadedFrames::held).sum();
+    diagnostics.add_measurement(&CACHED_FRAMES, || count as f64);
+}
+
+#[cfg(feature = "salva")]
+fn measure_salva(status: Option<Res<crate::salva::SalvaStatus>>, mut diagnostics: Diagnostics) {
+    let Some(status) = status else {
+        return;
+    };
+    diagnostics.add_measurement(&SALVA_PARTICLES, || status.particles as f64);
+    diagnostics.add_measurement(&SALVA_STEP, || 1e3 * status.step_time.as_secs_f64());
 }
 
 fn measure(fluids: Query<Ref<ShapedFluid>>, mut diagnostics: Diagnostics) {

@@ -1,4 +1,4 @@
-//! Particle liquids for Bevy, with up to four refractions in screen space.
+//! Particle liquids for Bevy, with up to four refractions in screen space; and rain.
 //!
 //! A fluid is an entity with [`FluidParticles`] and a [`FluidMaterial`]; a camera with
 //! [`ScreenSpaceFluid`] draws it. Everything else has defaults.
@@ -36,12 +36,28 @@
 //!
 //! # Where particles come from
 //!
-//! Write them into [`FluidParticles`] yourself, or let a [`ParticleEmitter`] do so: particles come out
-//! of its nozzle, fly, bounce off every [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and
-//! [`FluidSystems::Simulate`]. They do not push each other. With the feature `recordings`, `recording`
-//! plays numbered particle files into them, loaded in the background, and writes such files. With
-//! `salva`, `SalvaPlugin` simulates liquids live, among boundaries and floating bodies; see the module
-//! `salva`.
+//! - Your own code writes them into [`FluidParticles`].
+//! - A [`ParticleEmitter`] does so: particles come out of its nozzle, fly, bounce off every
+//!   [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and [`FluidSystems::Simulate`]. They
+//!   do not push each other.
+//! - With the feature `recordings`, a `RecordingPlayer` plays numbered particle files into them, loaded
+//!   in the background, and a `RecordingWriter` writes such files: see the module `recording`.
+//! - With the feature `salva`, `SalvaPlugin` simulates them live, among boundaries and floating bodies:
+//!   see the module `salva`.
+//!
+//! # What they look like
+//!
+//! A [`FluidMaterial`] is a refractive index and a [`Medium`]: what is inside scatters light, absorbs
+//! it and shines, each by a density and a colour, from clear water to milk, smoke and fire. Where
+//! nothing is refracted, [`Thickness`] says whether gaps between puffs count. [`SurfaceKernel`], on the
+//! fluid, sets how particles grow together; [`ScreenSpaceFluid`], on the camera, sets smoothing,
+//! [`Refractions`], [`Search`] and [`Fresnel`], with presets from `FAST` to `ACCURATE`.
+//!
+//! # Rain
+//!
+//! [`RainPlugin`] draws [`Rain`] for the camera that has it: streaks of falling drops, lit by the
+//! scene's lights, kept off by [`RainShelter`](rain::RainShelter)s. It needs nothing of [`FluidPlugin`];
+//! see [`rain`].
 //!
 //! # Looking inside
 //!
@@ -50,6 +66,15 @@
 //!
 //! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
 //! finds them: see [`diagnostics`] for the paths.
+//!
+//! # Where it comes from
+//!
+//! The layers, the planes and the order of refractions are those of T. Imai's master's thesis
+//! (University of Tsukuba, 2016), the kernels Yu and Turk's (2013, equations 9 to 11: [`shape`]), the
+//! medium that of an article on a simple volume model (its equation: [`Medium`]). Other ways of
+//! smoothing are Truong and Yuksel's (2018, [`NarrowRange`]) and van der Laan, Green and Sainz's (2009,
+//! [`CurvatureFlow`]). Rain follows Yoshida, Dobashi and Yamamoto, with the drops of Marshall and Palmer
+//! (1948) and the speeds of Gunn and Kinzer (1949): [`rain`]. Live simulation is salva3d's.
 //!
 //! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
 //! with the fifty hard cases that are tested.
@@ -157,6 +182,6 @@ impl Plugin for FluidPlugin {
 }
 
 /// The README's code is compiled with the doc tests, where the features are there that it shows.
-#[cfg(all(doctest, feature = "recordings"))]
+#[cfg(all(doctest, feature = "recordings", feature = "salva"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,5 +1,8 @@
 //! The viewer as a program: what it says, writes and returns.
 
+#[path = "common/program.rs"]
+mod program;
+
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -8,30 +11,14 @@ use std::{
 
 use serde_json::Value;
 
-/// The example's executable, which `cargo test` builds beside the tests.
+use program::{assert_picture, assert_refused, example, lines};
+
 fn viewer() -> Command {
-    let test = std::env::current_exe().unwrap();
-    let release = test.ancestors().nth(2).unwrap();
-    let program = release.join("examples/viewer");
-    assert!(
-        program.exists(),
-        "{} is not built: run `cargo test` for all targets, or build the example first",
-        program.display()
-    );
-    let mut command = Command::new(program);
-    // Some drivers complain on stderr without it.
-    command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-    command
+    example("viewer")
 }
 
-/// A folder of its own for a test, empty.
 fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("viewer")
-        .join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
+    program::folder("viewer", test)
 }
 
 /// A drop of 27 particles and as many other triples as given, in the `.xyz` format.
@@ -56,29 +43,6 @@ fn run(file: &Path, folder: &Path, options: &[&str]) -> Output {
         .args(options)
         .output()
         .unwrap()
-}
-
-fn lines(stderr: &[u8]) -> Vec<String> {
-    let text = String::from_utf8_lossy(stderr);
-    let lines = text.lines().filter(|line| !line.trim().is_empty());
-    lines.map(str::to_owned).collect()
-}
-
-/// Exit code 2, one line that names every one of `names`, and no picture, not even half of one.
-fn assert_refused(output: &Output, folder: &Path, names: &[&str]) {
-    let lines = lines(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{lines:?}");
-    let [line] = &lines[..] else {
-        panic!("not one line: {lines:#?}");
-    };
-    for name in names {
-        assert!(line.contains(name), "{name} is not in: {line}");
-    }
-    let pictures = fs::read_dir(folder).unwrap().filter(|entry| {
-        let name = entry.as_ref().unwrap().file_name();
-        name.to_string_lossy().contains(".png")
-    });
-    assert_eq!(pictures.count(), 0);
 }
 
 #[test]
@@ -181,10 +145,7 @@ fn a_good_run_writes_a_picture_and_statistics() {
     let output = run(&file, &folder, &["--stats", stats.to_str().unwrap()]);
     assert!(output.status.success(), "{:?}", lines(&output.stderr));
 
-    let picture = image::open(folder.join("picture.png")).unwrap().into_rgb8();
-    assert_eq!(picture.dimensions(), (96, 64));
-    let first = *picture.get_pixel(0, 0);
-    assert!(picture.pixels().any(|pixel| *pixel != first));
+    assert_picture(&folder.join("picture.png"), (96, 64));
 
     let stats: Value = serde_json::from_slice(&fs::read(stats).unwrap()).unwrap();
     let number = |key: &str| {

@@ -18,7 +18,7 @@ use bevy_fluid::{
     rain::{Exposure, RainMethod, RainStreaks},
 };
 use clap::{Parser, ValueEnum};
-use fluid_stage::{StagePlugins, VIEW_SIZE, scenery::Scenery};
+use fluid_stage::{StagePlugins, VIEW_SIZE, parse_args, scenery::Scenery};
 
 /// Rain in a street.
 #[derive(Parser, Resource, Clone, Debug)]
@@ -91,7 +91,7 @@ impl Scene {
 }
 
 fn main() -> AppExit {
-    let args = Args::parse();
+    let args: Args = parse_args();
     let stage = StagePlugins {
         out: args.out.clone(),
         size: args.size,

@@ -10,7 +10,6 @@ use bevy_fluid::{
 use clap::{
     Parser, ValueEnum,
     builder::{PossibleValuesParser, TypedValueParser},
-    error::ErrorKind,
 };
 
 /// Draws the particles of a file as a liquid.
@@ -91,24 +90,6 @@ enum FresnelArg {
 }
 
 impl Args {
-    /// Ends the program with one line and exit code 2 where the command line makes no sense.
-    pub(crate) fn from_command_line() -> Self {
-        Self::try_parse().unwrap_or_else(|error| {
-            if matches!(
-                error.kind(),
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
-            ) {
-                error.exit();
-            }
-            // Clap goes on about usage; what is wrong is in its first paragraph.
-            let text = error.to_string();
-            let first = text.split("\n\n").next().unwrap_or(&text);
-            let line = first.split_whitespace().collect::<Vec<_>>().join(" ");
-            eprintln!("{line}");
-            std::process::exit(2);
-        })
-    }
-
     pub(crate) fn settings(&self) -> ScreenSpaceFluid {
         let plane = |form| {
             Smoothing::PlaneFit(PlaneFit {

@@ -15,12 +15,14 @@ use std::process::ExitCode;
 use anyhow::{anyhow, ensure};
 use bevy::prelude::*;
 use bevy_fluid::recording::ParticleFrame;
-use fluid_stage::{PendingPicture, StagePlugins, capture, headless_app, set_time_step, settle};
+use fluid_stage::{
+    PendingPicture, StagePlugins, capture, headless_app, parse_args, set_time_step, settle,
+};
 
 use crate::{args::Args, scene::ScenePlugin};
 
 fn main() -> ExitCode {
-    let args = Args::from_command_line();
+    let args = parse_args::<Args>();
     match run(&args) {
         Ok(code) => code,
         Err(error) => {

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use bevy::prelude::*;
 use thiserror::Error;
 
-use super::{ColliderShape, EmitterBounds, ParticleCollider, ParticleEmitter};
+use super::{ColliderShape, Emission, EmitterBounds, ParticleCollider, ParticleEmitter};
 use crate::{
     complaints::{AboutField, Complaints},
     limits::Limited,
@@ -211,11 +211,16 @@ pub(super) fn check_emitters(
     colliders: Query<(Entity, &ParticleCollider), Changed<ParticleCollider>>,
     mut gone_emitters: RemovedComponents<ParticleEmitter>,
     mut gone_colliders: RemovedComponents<ParticleCollider>,
+    mut emissions: Query<&mut Emission>,
     mut of_emitters: Local<Complaints>,
     mut of_colliders: Local<Complaints>,
 ) {
     for entity in gone_emitters.read() {
         of_emitters.forget(entity);
+        // One that is put back later, and elsewhere, has not come all the way from here.
+        if let Ok(mut emission) = emissions.get_mut(entity) {
+            *emission = default();
+        }
     }
     for entity in gone_colliders.read() {
         of_colliders.forget(entity);

@@ -37,6 +37,9 @@ use crate::{particles::FluidParticles, range::SettingRange, schedule::FluidSyste
 /// than 0.25 s. A stopped emitter without particles costs nothing. Values out of their range are said
 /// once in the log and taken as the nearest that is in range.
 ///
+/// A step of 100,000 particles takes 1.0 ms in flight, 1.9 ms among four solids and 1.4 ms at rest, their
+/// shaping left out (medians of `cargo bench --bench emitter` on 2 cores).
+///
 /// ```
 /// # use bevy::prelude::*;
 /// # use bevy_fluid::prelude::*;
@@ -148,6 +151,31 @@ impl ParticleEmitter {
         capacity: 100_000,
         seed: 0,
         queued: 0,
+    };
+
+    /// A garden hose along the entity's forward direction (−z).
+    pub const JET: Self = Self::jet(4000.0, 4.0);
+    /// A jet upwards that rises about 1.3 m, opens and falls back.
+    pub const FOUNTAIN: Self = Self::fountain(4000.0, 5.0);
+    /// Drops that fall from a disc a metre wide.
+    pub const SHOWER: Self = Self::shower(2000.0, 0.5);
+    /// A fan of fine drops around the entity's forward direction (−z), which the air slows down.
+    pub const SPRAY: Self = Self {
+        spread: 0.5,
+        nozzle: 0.01,
+        particle_radius: 0.008,
+        drag: 1.0,
+        ..Self::jet(6000.0, 6.0)
+    };
+    /// A tap that is not quite shut: a drop falls every half second.
+    pub const DRIP: Self = Self {
+        rate: 2.0,
+        speed: 0.0,
+        direction: Vec3::NEG_Y,
+        spread: 0.0,
+        nozzle: 0.0,
+        jitter: 0.0,
+        ..Self::DEFAULT
     };
 
     /// A narrow jet along the entity's forward direction (−z), as `Transform::looking_at` aims it:

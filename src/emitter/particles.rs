@@ -225,12 +225,16 @@ pub(super) fn simulate(
         Without<ExternalMotion>,
     >,
     mut colliders: Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
+    mut gone: RemovedComponents<ParticleEmitter>,
     mut list: Local<Colliders>,
     mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
     list.gather(&mut colliders);
+    for entity in gone.read() {
+        complaints.forget(entity);
+    }
     for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
         let emitter = emitter.clamped();
         if fluid.radius != emitter.particle_radius {

@@ -19,7 +19,9 @@
 //!
 //! What is shown follows from reflection: names from the fields, explanations from their docs,
 //! sliders from [`SettingRange`](crate::SettingRange). Any component or resource that derives
-//! `Reflect` can join: see [`FluidInspector::show`]. A closed window costs nothing: if the program
+//! `Reflect` can join: see [`FluidInspector::show`]. The fields are drawn by a walker of its own, as
+//! no release of `bevy-inspector-egui` goes with what is used here, Bevy 0.19 and `bevy_egui` 0.42:
+//! 0.37 wants `bevy_egui` 0.40, and 0.38 Bevy 0.20. A closed window costs nothing: if the program
 //! has no [`EguiPlugin`] of its own, egui itself rests.
 //!
 //! Let the camera keep still while the pointer is over the window with
@@ -135,7 +137,9 @@ impl Plugin for FluidInspectorPlugin {
             .show::<RainShelter>()
             .show::<RainStreaks>();
         #[cfg(feature = "recordings")]
-        inspector.show::<crate::recording::RecordingPlayer>();
+        inspector
+            .show::<crate::recording::RecordingPlayer>()
+            .show::<crate::recording::RecordingWriter>();
         #[cfg(feature = "salva")]
         inspector
             .show::<crate::salva::SalvaFluid>()

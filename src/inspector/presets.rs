@@ -5,7 +5,10 @@ use bevy::{
     reflect::{FromType, PartialReflect, TypeRegistry},
 };
 
-use crate::{Bilateral, FluidMaterial, Medium, PlaneFit, Rain, ScreenSpaceFluid, SurfaceKernel};
+use crate::{
+    Bilateral, FluidMaterial, Medium, ParticleEmitter, PlaneFit, Rain, ScreenSpaceFluid,
+    SurfaceKernel,
+};
 
 /// A setting with named values. Register [`ReflectPresets`] for it, and the inspector offers them:
 ///
@@ -87,6 +90,7 @@ presets! {
     FluidMaterial: WATER, CLEAR_WATER, INK, MILK, HONEY, SMOKE, FIRE;
     SurfaceKernel: DEFAULT, THESIS, EARLIER, PUFFS;
     Medium: CLEAR;
+    ParticleEmitter: DEFAULT, JET, FOUNTAIN, SHOWER, SPRAY, DRIP;
     PlaneFit: DEFAULT, THESIS;
     Bilateral: DEFAULT, THESIS;
     Rain: DRIZZLE, RAIN, HEAVY, CLOUDBURST;
@@ -95,9 +99,10 @@ presets! {
 #[cfg(feature = "salva")]
 pub(super) mod salva {
     use super::*;
-    use crate::salva::SalvaFluid;
+    use crate::salva::{SalvaBoundary, SalvaFluid};
 
     presets! {
         SalvaFluid: WATER, HONEY;
+        SalvaBoundary: MESH, PLANE;
     }
 }

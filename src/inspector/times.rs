@@ -11,7 +11,7 @@ use bevy_egui::egui::{self, Align, Color32, Layout, RichText, Ui};
 use egui_plot::{Line, Plot};
 
 use super::widgets::WIDTH;
-use crate::diagnostics::{PASSES, SHAPE_TOTAL, cpu_time, gpu_time};
+use crate::diagnostics::{PASSES, RAIN_PASSES, SHAPE_TOTAL, cpu_time, gpu_time};
 
 /// Which times are plotted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +38,12 @@ const COLORS: [Color32; PASSES.len() + 1] = [
     Color32::from_rgb(160, 130, 240),
 ];
 
+/// The names and colours of what has rain in it.
+const RAIN: [(&str, Color32); RAIN_PASSES.len()] = [
+    ("rain: scene depth", Color32::from_rgb(120, 120, 200)),
+    ("transparent, rain", Color32::from_rgb(190, 215, 240)),
+];
+
 /// What one line of the plot and one row of the table are about.
 struct Stage {
     name: String,
@@ -47,7 +53,8 @@ struct Stage {
 }
 
 impl Stage {
-    fn all() -> Vec<Self> {
+    /// Those with rain only where it is drawn: nobody else asks for the transparent things.
+    fn all(store: &DiagnosticsStore, now: Instant) -> Vec<Self> {
         let shape = Self {
             name: "shape".into(),
             color: COLORS[PASSES.len()],
@@ -60,7 +67,18 @@ impl Stage {
             gpu: Some(gpu_time(pass)),
             cpu: cpu_time(pass),
         });
-        [shape].into_iter().chain(passes).collect()
+        let rain = RAIN_PASSES
+            .iter()
+            .zip(RAIN)
+            .map(|(pass, (name, color))| Self {
+                name: name.into(),
+                color,
+                gpu: Some(gpu_time(pass)),
+                cpu: cpu_time(pass),
+            });
+        let rains = current(store, Some(&cpu_time(RAIN_PASSES[0])), now).is_some();
+        let rain = rain.filter(|_| rains);
+        [shape].into_iter().chain(passes).chain(rain).collect()
     }
 
     fn path(&self, clock: Clock) -> Option<&DiagnosticPath> {
@@ -84,7 +102,7 @@ fn current<'a>(
 
 pub(super) fn show(ui: &mut Ui, store: &DiagnosticsStore, clock: &mut Clock) {
     let now = Instant::now();
-    let stages = Stage::all();
+    let stages = Stage::all(store, now);
     ui.horizontal(|ui| {
         ui.selectable_value(clock, Clock::Gpu, "GPU");
         ui.selectable_value(clock, Clock::Cpu, "CPU");

@@ -1,5 +1,7 @@
 //! A recording: which files, and when each is shown.
 
+use std::sync::Arc;
+
 use bevy::{
     asset::{AssetPath, AssetServer, io::AssetSourceId},
     prelude::*,
@@ -65,7 +67,8 @@ impl From<&str> for RecordingSettings {
 /// time all the same: the frame before is held, or the gap is interpolated across.
 #[derive(Asset, TypePath, Clone, Debug, PartialEq)]
 pub struct FluidRecording {
-    pub(super) frames: Vec<RecordedFrame>,
+    /// Shared with the players, which know by it whether it is still the same.
+    pub(super) frames: Arc<[RecordedFrame]>,
     pub(super) rate: f64,
     pub(super) radius: Option<f32>,
 }

@@ -1,5 +1,7 @@
 //! The frames that a player holds: loaded in the background, never more than it may.
 
+use std::sync::Arc;
+
 use bevy::{
     asset::AssetServer,
     prelude::*,
@@ -18,9 +20,8 @@ use super::{
 /// them.
 #[derive(Component, Debug, Default)]
 pub struct LoadedFrames {
-    recording: AssetId<FluidRecording>,
-    /// Of the whole recording; to see that it is another now.
-    frame_count: usize,
+    /// Those of the whole recording; to see that it is another now, or has been loaded anew.
+    recorded: Arc<[RecordedFrame]>,
     slots: Vec<Slot>,
     /// Those that have not turned out to be damaged, by number.
     pub(super) playable: Vec<usize>,
@@ -86,17 +87,15 @@ impl LoadedFrames {
 
     /// How many frames have turned out to be damaged or missing.
     pub fn skipped(&self) -> usize {
-        self.frame_count - self.playable.len()
+        self.recorded.len() - self.playable.len()
     }
 
-    /// Forgets everything if the recording is another.
-    pub(super) fn follow(&mut self, id: AssetId<FluidRecording>, recording: &FluidRecording) {
-        let frame_count = recording.frames.len();
-        if self.recording != id || self.frame_count != frame_count {
+    /// Forgets everything if the recording is another, even if by the same name and length.
+    pub(super) fn follow(&mut self, recording: &FluidRecording) {
+        if !Arc::ptr_eq(&self.recorded, &recording.frames) {
             *self = Self {
-                recording: id,
-                frame_count,
-                playable: (0..frame_count).collect(),
+                recorded: recording.frames.clone(),
+                playable: (0..recording.frames.len()).collect(),
                 is_seeking: true,
                 is_waiting: true,
                 ..default()

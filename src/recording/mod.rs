@@ -22,6 +22,12 @@
 //! }
 //! ```
 //!
+//! Some of the readers of particle files check what they read by panicking. That is caught and becomes
+//! an error that names the file. So that nothing is printed of it, the first `.vtk` or `.ply` that is
+//! read wraps the process's panic hook, once and for good: all other panics still reach the hook that
+//! was there. A hook that the program sets afterwards replaces the wrapped one, and hears of damaged
+//! files too.
+//!
 //! A player reads assets, a writer writes to the file system: patterns of the one are asset paths,
 //! those of the other are the system's; absolute paths are the same for both.
 

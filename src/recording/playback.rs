@@ -27,7 +27,7 @@ pub(super) fn play(
             continue;
         };
         let frames = &mut *frames;
-        frames.follow(player.recording.id(), recording);
+        frames.follow(recording);
         frames.collect(entity);
         if frames.playable.is_empty() {
             continue;
@@ -47,7 +47,10 @@ pub(super) fn play(
                 &mut particles,
             );
         }
-        let radius = frames.shown_radius.or(player.radius).or(recording.radius);
+        let radius = frames
+            .shown_radius
+            .or(player.sound_radius())
+            .or(recording.radius);
         if let Some(radius) = radius.filter(|&radius| radius != particles.radius)
             && frames.shown.is_some()
         {

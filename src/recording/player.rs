@@ -24,7 +24,8 @@ const CACHES: [usize; 2] = [2, 1024];
 /// Every player has frames of its own: two that play one recording read its files twice, each at its
 /// own time.
 ///
-/// Values out of their range are said once and played as the nearest in range.
+/// Values out of their range are said once and played as the nearest in range; a radius that is not
+/// a positive number counts as not given.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, LoadedFrames)]
@@ -167,6 +168,11 @@ impl RecordingPlayer {
         }
     }
 
+    /// The radius, if particles can have it.
+    pub(super) fn sound_radius(&self) -> Option<f32> {
+        self.radius.filter(|&radius| is_radius(radius))
+    }
+
     pub(super) fn clamped_cache(&self) -> usize {
         self.cache.clamp(CACHES[0], CACHES[1])
     }
@@ -188,7 +194,11 @@ pub(super) fn check_players(
         };
         let field = discriminant(&error);
         if said.insert(entity, field) != Some(field) {
-            warn!("fluid {entity}: {error}; it is played with the nearest value in range");
+            let instead = match error {
+                PlayerError::Radius(_) => "without it",
+                _ => "with the nearest value in range",
+            };
+            warn!("fluid {entity}: {error}; it is played {instead}");
         }
     }
 }

@@ -93,6 +93,29 @@ fn a_moving_emitter_leaves_no_clumps() {
 }
 
 #[test]
+fn an_emitter_put_back_elsewhere_starts_there() {
+    let still = ParticleEmitter {
+        rate: 100.0,
+        speed: 0.0,
+        gravity: Vec3::ZERO,
+        ..EXACT
+    };
+    let (mut app, entity) = emitting(still);
+    step(&mut app, 0.05);
+    app.world_mut()
+        .entity_mut(entity)
+        .remove::<ParticleEmitter>();
+    step(&mut app, 0.05);
+    place(&mut app, entity).translation.x = 100.0;
+    app.world_mut().entity_mut(entity).insert(still);
+    step(&mut app, 0.1);
+    let places = drawn(&app, entity);
+    assert_eq!(places.len(), 15);
+    let is_at_either = |x: f32| x.abs() < 1e-3 || (x - 100.0).abs() < 1e-3;
+    assert!(places.iter().all(|p| is_at_either(p.x)), "{places:?}");
+}
+
+#[test]
 fn what_is_out_stays_in_the_world() {
     let (mut app, entity) = emitting(ParticleEmitter {
         speed: 0.0,

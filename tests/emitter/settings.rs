@@ -45,6 +45,11 @@ const SHAPES: [(&str, fn(f32) -> ColliderShape); 6] = [
 fn presets_and_defaults_make_sense() {
     for emitter in [
         Emitter::DEFAULT,
+        Emitter::JET,
+        Emitter::FOUNTAIN,
+        Emitter::SHOWER,
+        Emitter::SPRAY,
+        Emitter::DRIP,
         Emitter::jet(1e4, 20.0),
         Emitter::fountain(1e4, 20.0),
         Emitter::shower(1e4, 2.0),
@@ -171,4 +176,26 @@ fn the_fluid_has_the_emitters_radius() {
     emitter(&mut app, entity).particle_radius = 0.1;
     step(&mut app, 0.0);
     assert_eq!(radius(&app), 0.1);
+}
+
+#[test]
+fn an_emitter_that_is_put_back_is_told_again() {
+    let mut app = app();
+    // The log is that of all tests: an entity that no other is called like.
+    let entity = (0..1000).map(|_| app.world_mut().spawn_empty().id()).last();
+    let entity = app.world_mut().entity_mut(entity.unwrap());
+    let entity = { entity }.insert(EXACT).remove::<SurfaceKernel>().id();
+    run(&mut app, 0.1, 30.0);
+    place(&mut app, entity).scale = Vec3::ZERO;
+    let said = || log::said(&format!("emitter {entity}: its `GlobalTransform`"));
+    step(&mut app, 0.1);
+    step(&mut app, 0.1);
+    assert_eq!(said(), 1);
+    let mut fluid = app.world_mut().entity_mut(entity);
+    fluid.remove::<ParticleEmitter>();
+    step(&mut app, 0.1);
+    let mut fluid = app.world_mut().entity_mut(entity);
+    fluid.insert((EXACT, FluidParticles::new(vec![Vec3::ZERO], 0.02)));
+    step(&mut app, 0.1);
+    assert_eq!(said(), 2);
 }

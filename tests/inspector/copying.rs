@@ -55,6 +55,53 @@ fn settings_are_copied_as_code() {
 }
 
 #[test]
+fn emitters_have_presets() {
+    use bevy_fluid::inspector::ReflectPresets;
+
+    let mut app = opened();
+    let world = app.world_mut();
+    world.spawn((Name::new("tap"), ParticleEmitter::DRIP));
+    let types = world.resource::<AppTypeRegistry>().clone();
+    let types = types.read();
+    let presets = ReflectPresets::of(&ParticleEmitter::SPRAY, &types).unwrap();
+    assert_eq!(presets.name_of(&ParticleEmitter::SPRAY), Some("SPRAY"));
+    let names: Vec<_> = presets.values().into_iter().map(|(name, _)| name).collect();
+    let expected = ["DEFAULT", "JET", "FOUNTAIN", "SHOWER", "SPRAY", "DRIP"];
+    assert_eq!(names, expected);
+    drop(types);
+    step(&mut app, 20);
+    let store = app.world().resource::<DiagnosticsStore>();
+    let emitted = store.get(&diagnostics::EMITTED).and_then(Diagnostic::value);
+    // Two a second.
+    assert!(emitted.is_some_and(|count| count >= 1.0), "{emitted:?}");
+}
+
+#[test]
+fn rain_has_its_times_where_it_falls() {
+    let mut app = open(show_with(|app| {
+        app.add_plugins(RainPlugin {
+            synchronous_bake: true,
+        });
+    }));
+    let is_listed = |app: &mut App| {
+        let mut all = widgets(app).into_iter();
+        all.any(|it| it.name == "■ rain: scene depth")
+    };
+    step(&mut app, 10);
+    assert!(!is_listed(&mut app));
+    let mut cameras = app.world_mut().query_filtered::<Entity, With<Camera3d>>();
+    let camera = cameras.single(app.world()).unwrap();
+    app.world_mut().entity_mut(camera).insert(Rain::HEAVY);
+    step(&mut app, 20);
+    assert!(is_listed(&mut app));
+    let store = app.world().resource::<DiagnosticsStore>();
+    for pass in diagnostics::RAIN_PASSES {
+        let time = store.get(&diagnostics::cpu_time(pass));
+        assert!(time.and_then(Diagnostic::value).is_some(), "{pass}");
+    }
+}
+
+#[test]
 fn counts_and_times_are_in_bevys_store() {
     let mut app = opened();
     step(&mut app, 5);

@@ -254,6 +254,13 @@ fn only<T: Component + Clone>(app: &mut App) -> T {
         .clone()
 }
 
+/// The picture beside the window, where the fluid is.
+fn beside(app: &mut App) -> image::RgbaImage {
+    settle(app).unwrap();
+    let mut picture = capture(app).unwrap();
+    image::imageops::crop(&mut picture, 400, 0, 240, 480).to_image()
+}
+
 fn focused(app: &mut App) -> Option<accesskit::NodeId> {
     let context = context(app);
     let output = app.world().get::<EguiOutput>(context).unwrap();
@@ -316,7 +323,6 @@ fn a_key_opens_and_closes_it_and_a_closed_window_leaves_no_trace() {
 #[test]
 fn a_slider_follows_the_pointer_and_the_arrows() {
     let mut app = opened();
-    let before = capture(&mut app).unwrap();
     // Over the window, then out of it: the camera keeps still, then follows.
     let rect = in_sight(&mut app, "Slider", "contact");
     drag(&mut app, rect.left_center(), rect.center());
@@ -338,7 +344,6 @@ fn a_slider_follows_the_pointer_and_the_arrows() {
     send(&mut app, [Event::PointerMoved(pos2(630.0, 470.0))]);
     step(&mut app, 3);
     assert!(app.world().resource::<CameraMoves>().0 > moves);
-    assert!(capture(&mut app).unwrap() != before);
 
     let rect = in_sight(&mut app, "Button", "reset contact");
     click(&mut app, rect.center());
@@ -346,6 +351,23 @@ fn a_slider_follows_the_pointer_and_the_arrows() {
         only::<ScreenSpaceFluid>(&mut app),
         ScreenSpaceFluid::default()
     );
+}
+
+#[test]
+fn the_fluid_beside_the_window_follows_a_slider_and_its_reset() {
+    let mut app = opened();
+    let reset = |app: &mut App| {
+        let rect = in_sight(app, "Button", "reset refractive index");
+        click(app, rect.center());
+        (only::<FluidMaterial>(app).refractive_index, beside(app))
+    };
+    let before = reset(&mut app);
+    let rect = in_sight(&mut app, "Slider", "refractive index");
+    assert!(beside(&mut app) == before.1, "to scroll changes nothing");
+    drag(&mut app, rect.left_center(), rect.center());
+    assert!(only::<FluidMaterial>(&mut app).refractive_index > before.0 + 0.5);
+    assert!(beside(&mut app) != before.1);
+    assert!(reset(&mut app) == before);
 }
 
 #[test]
@@ -384,7 +406,7 @@ fn tab_goes_from_setting_to_setting_and_changes_none() {
 #[test]
 fn presets_variants_and_views_are_chosen_from_lists() {
     let mut app = opened();
-    let liquid = capture(&mut app).unwrap();
+    let liquid = beside(&mut app);
     choose(&mut app, "preset", "ACCURATE");
     assert_eq!(
         only::<ScreenSpaceFluid>(&mut app),
@@ -409,14 +431,5 @@ fn presets_variants_and_views_are_chosen_from_lists() {
 
     choose(&mut app, "shown", "overdraw");
     assert_eq!(only::<FluidDebugView>(&mut app), FluidDebugView::Overdraw);
-    settle(&mut app).unwrap();
-    let counts = capture(&mut app).unwrap();
-    let right = |picture: &image::RgbaImage| {
-        let mut part = picture.clone();
-        image::imageops::crop(&mut part, 400, 0, 240, 480).to_image()
-    };
-    assert!(
-        right(&counts) != right(&liquid),
-        "the view beside the window"
-    );
+    assert!(beside(&mut app) != liquid);
 }

@@ -291,10 +291,11 @@ fn sizes_and_samples_may_change() {
         settle(&mut app).unwrap();
         let data = radiance(&app);
         assert_eq!(data.size, size);
-        // A pixel of one sees what all of them see.
+        // All see about as much; a single ray meets voxels by chance.
+        let slack = if size == UVec2::ONE { 0.6 } else { 0.25 };
         let opacity = mean(&data);
         assert!(
-            (opacity / whole - 1.0).abs() < 0.25,
+            (opacity / whole - 1.0).abs() < slack,
             "{size}: {opacity}, {whole}"
         );
     }

@@ -10,7 +10,7 @@ use bevy::{
     shader::Shader,
 };
 use bevy_fluid::{
-    FluidPlugin, ShapedFluid,
+    FluidParticles, FluidPlugin, ShapedFluid,
     recording::{
         FluidRecording, Interpolation, RecordingPlayer, RecordingPlugin, RecordingSettings,
     },
@@ -18,8 +18,8 @@ use bevy_fluid::{
 
 use super::gates::{GatedReader, Gates};
 use super::{
-    app, folder, frames, log, open, play, player, seek, set_time_step, slowly, stop_clock, wait,
-    write_dots, x,
+    app, dot, folder, frames, log, open, play, player, seek, set_time_step, slowly, stop_clock,
+    wait, write_dots, x,
 };
 
 /// Files that open when they are told to: one dot each, whose x is its number.
@@ -235,6 +235,48 @@ fn a_player_may_go_or_change_its_mind_while_frames_load() {
     wait(&mut app, shows(first, 5));
     assert_eq!(x(&app, first), 5.0);
     assert_eq!(frames(app.world(), first).held(), 1);
+}
+
+#[test]
+fn a_recording_that_is_replaced_is_played_anew() {
+    let folder = folder("replaced");
+    write_dots(&folder, 0..4);
+    let mut app = app(&folder);
+    let numbers = |first, last| RecordingSettings {
+        first: Some(first),
+        last: Some(last),
+        ..slowly("dot_#.xyz")
+    };
+    let (one, other) = (open(&app, numbers(0, 1)), open(&app, numbers(2, 3)));
+    let entity = play(&mut app, RecordingPlayer::new(one.clone()));
+    wait(&mut app, |world| {
+        let recordings = world.resource::<Assets<FluidRecording>>();
+        recordings.contains(&other)
+    });
+    seek(&mut app, entity, 1.0);
+    assert_eq!(x(&app, entity), 1.0);
+    let mut recordings = app.world_mut().resource_mut::<Assets<FluidRecording>>();
+    let replacement = recordings.get(&other).unwrap().clone();
+    recordings.insert(&one, replacement).unwrap();
+    wait(&mut app, shows(entity, 3));
+    assert_eq!((x(&app, entity), player_time(&mut app, entity)), (3.0, 1.0));
+}
+
+#[test]
+fn a_description_that_is_reloaded_has_its_frames_read_again() {
+    let folder = folder("reloaded");
+    write_dots(&folder, 0..1);
+    let description = folder.join("dot.fluid.ron");
+    std::fs::write(&description, "(frames: \"dot_#.xyz\")").unwrap();
+    let mut app = app(&folder);
+    let server = app.world().resource::<AssetServer>().clone();
+    let entity = play(&mut app, RecordingPlayer::new(server.load("dot.fluid.ron")));
+    dot(7.0).write(&folder.join("dot_0.xyz")).unwrap();
+    server.reload("dot.fluid.ron");
+    wait(&mut app, |world| {
+        let particles: &FluidParticles = world.get(entity).unwrap();
+        particles.positions[0].x == 7.0
+    });
 }
 
 #[test]

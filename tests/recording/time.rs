@@ -9,8 +9,8 @@ use bevy_fluid::{
 };
 
 use super::{
-    app, dot, folder, frames, log, open, play, player, seek, set_time_step, slowly, wait,
-    write_dots, x,
+    app, dot, folder, frames, log, open, particles, play, player, seek, set_time_step, slowly,
+    wait, write_dots, x,
 };
 
 /// Holds all frames, and shows the one before each moment.
@@ -190,19 +190,44 @@ fn a_missing_frame_is_named_and_one_of_none_ends_it() {
 #[derive(Resource, Default)]
 struct Changes(u32);
 
-#[test]
-fn particles_change_with_what_is_shown_only() {
-    let (mut app, entity) = all_loaded("unchanged", &[0, 1, 2], |_| {});
+fn count_changes(app: &mut App) {
     app.init_resource::<Changes>().add_systems(
         Last,
         |changed: Query<(), Changed<FluidParticles>>, mut changes: ResMut<Changes>| {
             changes.0 += changed.iter().count() as u32;
         },
     );
+}
+
+#[test]
+fn particles_change_with_what_is_shown_only() {
+    let (mut app, entity) = all_loaded("unchanged", &[0, 1, 2], |_| {});
+    count_changes(&mut app);
     app.update();
     app.world_mut().resource_mut::<Changes>().0 = 0;
     set_time_step(&mut app, 0.1);
     // 0.1 … 2.0, and the end: frames 1 and 2 come.
     shown(&mut app, entity, 25);
     assert_eq!(app.world().resource::<Changes>().0, 2);
+}
+
+#[test]
+fn a_radius_that_is_none_counts_as_not_given() {
+    let (mut app, entity) = all_loaded("radius", &[0, 1, 2], |_| {});
+    count_changes(&mut app);
+    app.world_mut()
+        .get_mut::<FluidParticles>(entity)
+        .unwrap()
+        .radius = 0.25;
+    for radius in [-1.0, 0.0, f32::NAN, f32::INFINITY] {
+        player(&mut app, entity).radius = Some(radius);
+        app.update();
+        app.world_mut().resource_mut::<Changes>().0 = 0;
+        shown(&mut app, entity, 3);
+        assert_eq!(particles(&app, entity).radius, 0.25, "{radius}");
+        assert_eq!(app.world().resource::<Changes>().0, 0, "{radius}");
+    }
+    player(&mut app, entity).radius = Some(0.5);
+    app.update();
+    assert_eq!(particles(&app, entity).radius, 0.5);
 }

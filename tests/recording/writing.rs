@@ -52,6 +52,20 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Threads that are all busy are as slow as a disk can be, until what is returned is dropped.
+fn slow_disk() -> Vec<mpsc::Sender<()>> {
+    let pool = IoTaskPool::get();
+    let block = |_| {
+        let (sender, busy) = mpsc::channel::<()>();
+        pool.spawn(async move {
+            let _ = busy.recv();
+        })
+        .detach();
+        sender
+    };
+    (0..pool.thread_num()).map(block).collect()
+}
+
 #[test]
 fn what_is_recorded_can_be_played() {
     let folder = folder("recorded");
@@ -161,7 +175,12 @@ fn what_cannot_be_written_is_said_once() {
         ("age_without_number.xyz", "age_without_number.xyz"),
         ("age_#.doc", "age_#.doc"),
     ] {
-        let (mut app, entity) = recorded(&folder, writer(&folder, name), 0.1);
+        // So that nothing is said of a slow machine.
+        let patient = RecordingWriter {
+            queue: 1000,
+            ..writer(&folder, name)
+        };
+        let (mut app, entity) = recorded(&folder, patient, 0.1);
         wait(&mut app, |world| {
             world
                 .get::<WrittenFrames>(entity)
@@ -210,17 +229,7 @@ fn frames_that_would_wait_too_long_are_left_out() {
         ..writer(&folder, "age_#.xyz")
     };
     let (mut app, entity) = recorded(&folder, writer, 0.1);
-    // Threads that are all busy are as slow as a disk can be.
-    let pool = IoTaskPool::get();
-    let mut release = Vec::new();
-    for _ in 0..pool.thread_num() {
-        let (sender, busy) = mpsc::channel::<()>();
-        release.push(sender);
-        pool.spawn(async move {
-            let _ = busy.recv();
-        })
-        .detach();
-    }
+    let release = slow_disk();
     for _ in 0..6 {
         app.update();
     }
@@ -235,6 +244,40 @@ fn frames_that_would_wait_too_long_are_left_out() {
         ["age.fluid.ron", "age_0.xyz", "age_1.xyz", "age_6.xyz"]
     );
     assert_eq!(log::said("slow_disk/age_#.xyz is written too slowly"), 1);
+}
+
+#[test]
+fn another_pattern_is_described_even_where_its_first_frame_is_left_out() {
+    let folder = folder("other_pattern");
+    let first = RecordingWriter {
+        rate: 10.0,
+        queue: 1,
+        ..writer(&folder, "one_#.xyz")
+    };
+    let (mut app, entity) = recorded(&folder, first, 0.1);
+    let release = slow_disk();
+    app.update();
+    let mut changed = app.world_mut().get_mut::<RecordingWriter>(entity).unwrap();
+    changed.frames = writer(&folder, "other_#.xyz").frames;
+    app.update();
+    assert_eq!(written(&mut app, entity).dropped(), 1);
+    drop(release);
+    written(&mut app, entity).finish();
+    assert_eq!(
+        written(&mut app, entity).written(),
+        0,
+        "only the other's count"
+    );
+    app.update();
+    written(&mut app, entity).finish();
+    assert_eq!(written(&mut app, entity).written(), 1);
+    let expected = [
+        "one.fluid.ron",
+        "one_0.xyz",
+        "other.fluid.ron",
+        "other_1.xyz",
+    ];
+    assert_eq!(names(&folder), expected);
 }
 
 #[test]

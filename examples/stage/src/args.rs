@@ -1,8 +1,10 @@
-//! The three options of the small examples, by hand: they should not need more than Bevy.
+//! The three options of the small examples, by hand: they should not need more than Bevy. Those with
+//! more of them use clap.
 
 use std::{ffi::OsString, path::PathBuf};
 
 use bevy::math::UVec2;
+use clap::{Parser, error::ErrorKind};
 use thiserror::Error;
 
 use crate::{
@@ -83,6 +85,25 @@ impl StagePlugins {
         }
         Ok(self)
     }
+}
+
+/// This program's options, as clap reads them; ends the program with one line and exit code 2 where
+/// they make no sense.
+pub fn parse_args<A: Parser>() -> A {
+    A::try_parse().unwrap_or_else(|error| {
+        if matches!(
+            error.kind(),
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+        ) {
+            error.exit();
+        }
+        // Clap goes on about usage; what is wrong is in its first paragraph.
+        let text = error.to_string();
+        let first = text.split("\n\n").next().unwrap_or(&text);
+        let line = first.split_whitespace().collect::<Vec<_>>().join(" ");
+        eprintln!("{line}");
+        std::process::exit(2);
+    })
 }
 
 fn text(word: OsString) -> String {

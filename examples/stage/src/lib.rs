@@ -37,7 +37,7 @@ mod stage;
 mod texels;
 mod timing;
 
-pub use args::ArgumentError;
+pub use args::{ArgumentError, parse_args};
 pub use error::StageError;
 pub use headless::{
     adapter_name, capture, headless_app, headless_app_with, resize, set_time_step, settle, step,

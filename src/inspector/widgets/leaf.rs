@@ -35,8 +35,7 @@ pub(in crate::inspector) fn leaf(
         return Some(ui.checkbox(value, "").labelled_by(label).changed());
     }
     if let Some(value) = value.try_downcast_mut::<String>() {
-        let edit = egui::TextEdit::singleline(value).desired_width(VALUE);
-        return Some(ui.add(edit).labelled_by(label).changed());
+        return Some(text(ui, label, value));
     }
     if let Some(value) = value.try_downcast_mut::<Duration>() {
         let mut seconds = value.as_secs_f64();
@@ -74,4 +73,22 @@ pub(in crate::inspector) fn leaf(
     }
     vectors!(Vec2, Vec3, Vec4);
     None
+}
+
+/// A line of text, which counts once it is complete: half of a file's name is another file's.
+fn text(ui: &mut Ui, label: Id, value: &mut String) -> bool {
+    let id = ui.id().with("draft");
+    let draft = ui.data_mut(|data| data.remove_temp::<String>(id));
+    let mut draft = draft.unwrap_or_else(|| value.clone());
+    let edit = egui::TextEdit::singleline(&mut draft).desired_width(VALUE);
+    let edit = ui.add(edit).labelled_by(label);
+    if edit.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, draft));
+        return false;
+    }
+    let edited = edit.lost_focus() && draft != *value;
+    if edited {
+        *value = draft;
+    }
+    edited
 }

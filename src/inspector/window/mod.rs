@@ -3,6 +3,8 @@
 mod counts;
 mod debug_view;
 mod section;
+#[cfg(any(feature = "recordings", feature = "salva"))]
+mod sources;
 mod subjects;
 
 use bevy::{diagnostic::DiagnosticsStore, prelude::*, reflect::TypeRegistry};
@@ -107,6 +109,8 @@ fn contents(
     });
     if let Some(fluid) = fluid {
         counts(ui, world, fluid, subjects);
+        #[cfg(feature = "recordings")]
+        sources::recordings(ui, world, fluid);
         components(ui, world, fluid);
     } else {
         ui.label("No entity has FluidParticles.");
@@ -127,6 +131,8 @@ fn contents(
         for resource in &subjects.resources {
             components(ui, world, *resource);
         }
+        #[cfg(feature = "salva")]
+        sources::live(ui, world);
     }
 }
 

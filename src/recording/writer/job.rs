@@ -20,8 +20,10 @@ use crate::recording::{
 pub(super) struct Job {
     pub(super) frame: ParticleFrame,
     pub(super) path: PathBuf,
-    /// A second file, with the first frame.
+    /// A second file, with the first frame; none once it is written.
     pub(super) description: Option<(PathBuf, String)>,
+    /// Which of the writer's recordings it is a part of.
+    pub(super) recording: u32,
     bytes: Vec<u8>,
 }
 
@@ -38,8 +40,9 @@ impl Job {
             fs::create_dir_all(folder).map_err(failed(folder))?;
         }
         self.frame.write_with(&self.path, &mut self.bytes)?;
-        if let Some((path, text)) = self.description.take() {
-            replace(&path, text.as_bytes()).map_err(failed(&path))?;
+        if let Some((path, text)) = &self.description {
+            replace(path, text.as_bytes()).map_err(failed(path))?;
+            self.description = None;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use bevy::{prelude::*, tasks::IoTaskPool};
 use self::job::description;
 pub use self::written::WrittenFrames;
 use super::{error::RecordingError, frame::is_radius, pattern::FramePattern};
-use crate::particles::FluidParticles;
+use crate::{particles::FluidParticles, range::SettingRange};
 
 /// Frames of the clock may be a little short.
 const TOLERANCE: f64 = 1e-3;
@@ -24,6 +24,8 @@ const MAX_RATE: f32 = 10_000.0;
 /// than the app, frames are left out (and counted) rather than waited for: numbers keep their time.
 /// What cannot be written is said once, with its path, and ends the recording until the component
 /// changes. [`WrittenFrames`] has the counts.
+///
+/// A rate out of its range ends it too; a queue below 1 counts as 1.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, WrittenFrames)]
@@ -32,11 +34,13 @@ pub struct RecordingWriter {
     /// folders are made, and files that are there are replaced. Another pattern starts anew.
     pub frames: String,
     /// Frames per second of the app's [`Time`]. Range > 0..=10,000, default 30.
+    #[reflect(@SettingRange::new(0.1, 1e4).unit("1/s").logarithmic())]
     pub rate: f32,
     /// Whether nothing is written and the recording's clock stands still. Default: false.
     pub paused: bool,
     /// The most frames that wait to be written. Range ≥ 1, default 4. Higher: slow spells of the
     /// disk lose no frames, for the memory of as many.
+    #[reflect(@SettingRange::new(1.0, 256.0).unit("frames").logarithmic().open())]
     pub queue: usize,
 }
 
@@ -165,10 +169,13 @@ fn start(
     }
     let folder = Path::new(pattern.folder());
     job.path = folder.join(pattern.file_name(number));
-    job.description = (number == 0)
+    // With the first frame that is not left out.
+    job.description = (!written.is_described)
         .then(|| description(pattern, writer, frame.radius))
         .transpose()?
         .map(|text| (folder.join(format!("{}.fluid.ron", pattern.stem())), text));
+    job.recording = written.recording;
+    written.is_described = true;
     written.jobs.push(IoTaskPool::get().spawn(async move {
         let result = job.run();
         (job, result)

@@ -14,6 +14,10 @@ use crate::recording::frame::FrameError;
 #[derive(Component, Debug, Default)]
 pub struct WrittenFrames {
     pub(super) pattern: String,
+    /// Counts the patterns: what still waits of another is none of this one's frames.
+    pub(super) recording: u32,
+    /// Whether its `.fluid.ron` is written or on its way.
+    pub(super) is_described: bool,
     /// Recorded time. Unit: s.
     pub(super) elapsed: f64,
     pub(super) last: Option<u32>,
@@ -67,11 +71,17 @@ impl WrittenFrames {
         }
     }
 
-    fn take_back(&mut self, job: Job, result: Result<(), FrameError>) {
+    fn take_back(&mut self, mut job: Job, result: Result<(), FrameError>) {
+        let is_ours = job.recording == self.recording;
+        if job.description.take().is_some() && is_ours {
+            self.is_described = false;
+        }
         self.spare.push(job);
         match result {
-            Ok(()) => self.written += 1,
-            Err(error) => self.fail(&error.to_string()),
+            Ok(()) if is_ours => self.written += 1,
+            Ok(()) => {}
+            Err(error) if is_ours => self.fail(&error.to_string()),
+            Err(error) => warn!("a frame of an earlier recording is lost: {error}"),
         }
     }
 
@@ -84,6 +94,8 @@ impl WrittenFrames {
 
     pub(super) fn restart(&mut self, pattern: &str) {
         self.pattern = pattern.into();
+        self.recording = self.recording.wrapping_add(1);
+        self.is_described = false;
         self.elapsed = 0.0;
         self.last = None;
         (self.written, self.dropped) = (0, 0);
