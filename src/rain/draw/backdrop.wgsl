@@ -12,12 +12,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 }
 
 fn view_ray(pixel: vec2<f32>) -> vec3<f32> {
-    if rain.perspective == 0u {
-        return rain.forward;
-    }
     let ndc = frag_coord_to_ndc(vec4(pixel, 0.0, 1.0), view.main_pass_viewport).xy;
     let point = view.view_from_clip * vec4(ndc, 1.0, 1.0);
-    return normalize((view.world_from_view * vec4(point.xyz / point.w, 0.0)).xyz);
+    let along = normalize((view.world_from_view * vec4(point.xyz / point.w, 0.0)).xyz);
+    return select(rain.forward, along, rain.perspective == 1u);
 }
 
 @fragment
@@ -31,7 +29,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let before = min(scene, rain.distance);
     let near = min(rain.drops_end / max(across, 1e-6), before);
     let part = min(across / STEEPEST, 1.0);
-    let billboards = (before - near) * select(floor(part), part, rain.perspective == 1u);
+    let billboards = (before - near) * mix(floor(part), part, f32(rain.perspective));
     let drawn = min(near, rain.drops_reach) + billboards;
     let opacity = 1.0 - exp(-rain.extinction * (beyond + max(before - drawn, 0.0)));
     if opacity <= 0.0 {

@@ -79,14 +79,12 @@ fn within(level: GpuRainLevel, at: f32, end: f32) -> f32 {
 // for half as much to fill; their mirror images within count for them. Parallel rays all meet the same
 // voxels: there they fade at the ends, and only those that the near plane cuts off are mirrored.
 fn part_of_voxel(level: GpuRainLevel, at: f32, end: f32) -> f32 {
-    if rain.perspective == 0u {
-        return within(level, at, end) + within(level, -at, end);
-    }
-    if at < level.start || at >= level.end {
-        return 0.0;
-    }
-    return within(level, at, end) + within(level, 2.0 * level.start - at, end)
+    let whole = within(level, at, end);
+    let mirrored = whole + within(level, 2.0 * level.start - at, end)
         + within(level, 2.0 * level.end - at, end);
+    let is_inside = at >= level.start && at < level.end;
+    let faded = whole + within(level, -at, end);
+    return mix(faded, select(0.0, mirrored, is_inside), f32(rain.perspective));
 }
 
 // Where on its ray the drop that is seen is between two distances across the fall: every stretch of a

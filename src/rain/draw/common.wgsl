@@ -66,11 +66,8 @@ fn environment(direction: vec3<f32>) -> vec3<f32> {
 
 // Radiance of drops in what comes from all around: mostly what lies behind them.
 fn surroundings(direction: vec3<f32>) -> vec3<f32> {
-    var light = rain.ambient;
-    if rain.environment_intensity > 0.0 {
-        light += rain.environment_intensity * environment(direction);
-    }
-    return light;
+    // Where there is no map its intensity is 0.
+    return rain.ambient + rain.environment_intensity * environment(direction);
 }
 
 // Radiance of drops at a position in the light of lamps and suns: what a surface that faces them
