@@ -87,7 +87,7 @@ fn shaders_know_the_same_numbers() {
     assert_eq!(size_of::<GpuQuad>(), 40);
 }
 
-/// With all that a frame may have: lamps, suns, shelters, a moving camera.
+/// With all that a frame may have: lamps, suns, shelters.
 #[test]
 fn a_steady_frame_allocates_nothing() {
     let mut app = headless_app(uvec2(64, 48), |app| {
