@@ -1,8 +1,8 @@
 // Streaks of the drops in a voxel, on a billboard that stands along the fall and faces the eye.
 
 #import bevy_fluid::rain::draw::common::{
-    clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
-    scene_view_depth, streak_sampler, streaks, surroundings, view,
+    clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
+    scene_view_depth, streak_sampler, streaks, surroundings, uniform_of, view,
 }
 #import bevy_fluid::rain::draw::types::{GpuRainLevel, STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
 
@@ -60,15 +60,6 @@ fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
     return dot(texel, rain.levels[in.level].weights);
 }
 
-fn mixed(bits: u32) -> u32 {
-    let once = (bits ^ (bits >> 15u)) * 0x27D4EB2Fu;
-    return (once ^ (once >> 13u)) * 0x85EBCA6Bu;
-}
-
-fn uniform_of(bits: u32) -> f32 {
-    return f32(bits >> 8u) / 16777216.0;
-}
-
 // How much of a voxel at a distance lies in its level, up to `end`.
 fn within(level: GpuRainLevel, at: f32, end: f32) -> f32 {
     let low = max(at - 0.5 * level.size, level.start);
@@ -92,9 +83,9 @@ fn part_of_voxel(level: GpuRainLevel, at: f32, end: f32) -> f32 {
 // billboard, a lamp's cone would be the disc that it cuts out of it.
 fn drop_position(in: Varying, ray: vec3<f32>, across: f32, at: f32, ends: vec2<f32>, mip: f32) -> vec3<f32> {
 #ifdef LAMPS_OR_SHELTERS
-    let column = mixed(hash_of_tile(in) ^ u32(in.place.x * STREAK_TEXELS.x * exp2(-round(mip))));
+    let column = pcg(hash_of_tile(in) ^ u32(in.place.x * STREAK_TEXELS.x * exp2(-round(mip))));
     let stretch = fract(in.place.y) / (rain.mean_speed * rain.exposure) + uniform_of(column);
-    let there = mix(ends.x, ends.y, uniform_of(mixed(column ^ u32(stretch))));
+    let there = mix(ends.x, ends.y, uniform_of(pcg(column ^ u32(stretch))));
     return in.position + ray * ((there - at) / max(across, LEAST_ACROSS));
 #else
     return in.position;

@@ -20,6 +20,18 @@ const PI: f32 = 3.14159265;
 // Farther than any scene.
 const FAR: f32 = 1e9;
 
+// A hash (Jarzynski and Olano 2020). Its name is that of no field: imports would rename those.
+fn pcg(seed: u32) -> u32 {
+    let state = seed * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// Random bits as a number in 0..1.
+fn uniform_of(bits: u32) -> f32 {
+    return f32(bits >> 8u) / 16777216.0;
+}
+
 // Twin of `phase` in `phase.rs`.
 fn phase(cosine: f32) -> f32 {
     let even = (1.0 - 0.93 - 0.045) / (4.0 * PI);

@@ -3,8 +3,8 @@
 
 #import bevy_fluid::rain::draw::births::diameter_of_birth
 #import bevy_fluid::rain::draw::common::{
-    PI, clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, rain, ray_to,
-    scene_view_depth, surroundings, view,
+    PI, clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
+    scene_view_depth, surroundings, uniform_of, view,
 }
 #import bevy_fluid::rain::draw::types::{LARGEST, SPEED_STEP, Voxel}
 
@@ -27,17 +27,6 @@ const EDGE: f32 = 1.2;
 const EDGE: f32 = 0.5;
 #endif
 
-// PCG (Jarzynski and Olano 2020).
-fn hash(seed: u32) -> u32 {
-    let state = seed * 747796405u + 2891336453u;
-    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return (word >> 22u) ^ word;
-}
-
-fn uniform_of(bits: u32) -> f32 {
-    return f32(bits >> 8u) / 16777216.0;
-}
-
 // m/s.
 fn speed(diameter: f32) -> f32 {
     let at = diameter / SPEED_STEP;
@@ -55,30 +44,30 @@ fn nothing() -> Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
-    let slot = hash(cell.hash ^ hash((index / 4u) ^ hash(rain.seed)));
+    let slot = pcg(cell.hash ^ pcg((index / 4u) ^ pcg(rain.seed)));
     let volume = cell.size * cell.size * cell.size;
     // The first slots are for the drops that come first as rain grows denser.
-    let birth = (f32(index / 4u) + uniform_of(hash(slot ^ 0x85157AF5u))) / volume;
+    let birth = (f32(index / 4u) + uniform_of(pcg(slot ^ 0x85157AF5u))) / volume;
     let random = vec3(
-        uniform_of(slot), uniform_of(hash(slot ^ 0x3C6EF372u)), uniform_of(hash(slot ^ 0xDAA66D2Bu)),
+        uniform_of(slot), uniform_of(pcg(slot ^ 0x3C6EF372u)), uniform_of(pcg(slot ^ 0xDAA66D2Bu)),
     );
     let diameter = min(diameter_of_birth(birth, random), LARGEST);
     let falls = speed(diameter);
-    let start = uniform_of(hash(slot ^ 0x68E31DA4u));
+    let start = uniform_of(pcg(slot ^ 0x68E31DA4u));
     // A copy of the drop stands in every cell of its way; which one is in this cell by now?
     let row = i32(round((f32(cell.tile) + cell.fraction) / cell.size));
     let fallen = falls * rain.seconds / cell.size;
     let left = start - fract(fallen);
     let height = fract(left);
-    let copy = hash(slot ^ hash(u32(row + i32(floor(fallen)) - i32(floor(left)))));
+    let copy = pcg(slot ^ pcg(u32(row + i32(floor(fallen)) - i32(floor(left)))));
     // The last one is there as often as it takes for the mean.
-    if f32(index / 4u) + uniform_of(hash(copy ^ 0x1B56C4E9u)) >= rain.drops * volume {
+    if f32(index / 4u) + uniform_of(pcg(copy ^ 0x1B56C4E9u)) >= rain.drops * volume {
         return nothing();
     }
     // Columns of cells lean as drops of mean speed fall. What is faster or slower drifts through
     // its column, in at one side as it goes out at the other.
     let drift = rain.drift * (1.0 - falls / rain.mean_speed) / cell.size;
-    let sideways = fract(vec2(uniform_of(copy), uniform_of(hash(copy ^ 0xB5297A4Du))) + drift) - 0.5;
+    let sideways = fract(vec2(uniform_of(copy), uniform_of(pcg(copy ^ 0xB5297A4Du))) + drift) - 0.5;
     let head = cell.center + (vec3(sideways.x, 0.0, sideways.y)
         + rain.axis / rain.axis.y * (height - 0.5)) * cell.size;
     let way = vec3(-rain.wind.x, falls, -rain.wind.y) * rain.exposure;

@@ -56,6 +56,8 @@ pub(crate) struct Eye {
     pub(crate) position: DVec3,
     pub(crate) forward: Vec3,
     pub(crate) perspective: bool,
+    /// Sine of the angle between the way it looks and the fall.
+    steepness: f32,
     /// Planes with normals to the inside, relative to the eye.
     planes: [Vec4; 4],
     /// A box around what is seen up to the distance, relative to the eye.
@@ -84,11 +86,12 @@ impl Eye {
             row(3) - row(1),
         ]
         .map(|plane| plane / plane.truncate().length());
+        let steepness = forward.cross(axis).length();
         let depth = if perspective {
             distance
         } else {
             // Voxels across the end count in part, however steep the way there is.
-            let steepness = forward.cross(axis).length().max(STEEPEST);
+            let steepness = steepness.max(STEEPEST);
             let last = LEVELS.iter().rfind(|level| level.start < distance);
             distance + 0.5 * last.map_or(0.0, |level| level.size) / steepness
         };
@@ -111,6 +114,7 @@ impl Eye {
             position: world_from_view.translation().as_dvec3(),
             forward,
             perspective,
+            steepness,
             planes,
             low,
             high,
@@ -135,8 +139,7 @@ impl Eye {
     }
 
     /// The least sine of the angle between a ray of the view and the fall.
-    pub(crate) fn steepest(&self, axis: Vec3) -> f32 {
-        let along = self.forward.dot(axis).abs().min(1.0);
+    pub(crate) fn steepest(&self) -> f32 {
         let widest = self.planes.iter().fold(0.0, |widest: f32, plane| {
             widest.max(plane.truncate().dot(self.forward).clamp(0.0, 1.0).asin())
         });
@@ -146,7 +149,7 @@ impl Eye {
         } else {
             0.0
         };
-        (along.acos() - spread).max(0.0).sin()
+        (self.steepness.min(1.0).asin() - spread).max(0.0).sin()
     }
 }
 
@@ -296,24 +299,17 @@ fn radius_in(
 ) -> Option<f32> {
     let half = 0.5 * level.size;
     let across = |way: Vec3| way - way.dot(axis) * axis;
-    // Of its part of the level, and of what is in sight, some must be there.
-    let is_within = |nearest: f32, farthest: f32| {
-        nearest < level.end
-            && nearest < distance + content.half(level.size)
-            && farthest > level.start
-    };
     let (radius, nearest, farthest) = if !eye.perspective {
         // Parallel rays begin at the view's plane.
         let depth = center.dot(eye.forward);
         match content {
             Content::Streaks => {
-                let steepness = across(eye.forward).length();
-                if steepness < STEEPEST {
+                if eye.steepness < STEEPEST {
                     return None;
                 }
-                let radius = depth * steepness;
+                let radius = depth * eye.steepness;
                 // The billboard leans against the view's plane, and fades at the ends.
-                let reach = half * (1.0 + steepness / axis.y);
+                let reach = half * (1.0 + eye.steepness / axis.y);
                 (radius, radius - reach, radius + reach)
             }
             Content::Drops(_) => {
@@ -334,8 +330,10 @@ fn radius_in(
             Content::Drops(_) => (radius, radius - 1.42 * half, radius + 1.42 * half),
         }
     };
-    (is_within(nearest, farthest) && eye.sees(center, content.reach(level.size, axis)))
-        .then_some(radius)
+    // Of its part of the level, and of what is in sight, some must be there.
+    let within =
+        nearest < level.end.min(distance + content.half(level.size)) && farthest > level.start;
+    (within && eye.sees(center, content.reach(level.size, axis))).then_some(radius)
 }
 
 fn hash(words: [u32; 3]) -> u32 {

@@ -98,7 +98,8 @@ pub(crate) fn queue_rain(
             continue;
         };
         let place = view.world_from_view.translation();
-        let mut gpu = GpuRain::new(extracted, &view.world_from_view, &eye, axis);
+        let plan = Plan::new(rain.method, rain.distance, &eye);
+        let mut gpu = GpuRain::new(extracted, &plan, &view.world_from_view, &eye, axis);
         gpu.shelter(&mut shelters, place);
         let layers = layers.unwrap_or_default();
         let suns_in_view = sun_lights.iter().filter(|(_, of)| of.intersects(layers));
@@ -127,7 +128,6 @@ pub(crate) fn queue_rain(
                 always || quad.lamps != 0
             }
         };
-        let plan = Plan::new(rain.method, rain.distance, &eye);
         let instances = quads.instances.values_mut();
         let clock = &extracted.clock;
         let mut too_many = plan.levels.is_some_and(|levels| {
@@ -218,7 +218,7 @@ pub(crate) fn queue_rain(
                 indexed: false,
             });
         };
-        if rain.extent > rain.distance || plan.leaves_some(eye.steepest(axis)) {
+        if rain.extent > rain.distance || plan.leaves_some(eye.steepest()) {
             add(BACKDROP, rain.distance + 1.0, backdrop);
         }
         for (shell_index, shell) in quads.shells.iter().enumerate() {

@@ -161,6 +161,7 @@ impl GpuRain {
     /// Without lights and shelters.
     pub(crate) fn new(
         extracted: &ExtractedRain,
+        plan: &Plan,
         view: &GlobalTransform,
         eye: &Eye,
         axis: Vec3,
@@ -171,7 +172,6 @@ impl GpuRain {
             streaks,
             ..
         } = extracted;
-        let plan = Plan::new(rain.method, rain.distance, eye);
         let scale = view.affine().matrix3;
         let rate = f64::from(rain.rate);
         let mut gpu = Self {

@@ -85,7 +85,6 @@ impl Command {
             (Self::Substance(id, _), Self::Substance(other, _))
             | (Self::Limit(id, _), Self::Limit(other, _))
             | (Self::Alter(id, _), Self::Alter(other, _))
-            | (Self::Move(id, _), Self::Move(other, _))
             | (Self::Jump(id, _), Self::Jump(other, _)) => id == other,
             (Self::RemoveFluid(id), old) => old.fluid() == Some(*id),
             (Self::Solid { id, .. } | Self::RemoveSolid(id), old) => old.solid() == Some(*id),
