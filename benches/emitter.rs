@@ -1,7 +1,7 @@
 //! Cost of emitting and moving particles: a step of an emitter that keeps some number of them alive,
 //! without their shaping.
 //!
-//! `cargo bench --bench emitter`, or with `-- --quick` for fewer runs and a smaller size; medians and
+//! `cargo bench --package fluid_benches --bench emitter`, or with `-- --quick` for fewer runs and a smaller size; medians and
 //! the slowest of ten are shown. In flight nothing is near; over solids they fall onto a ground, a
 //! ball, a box and a capsule and live on there; at rest all lie on the ground.
 

@@ -1,6 +1,6 @@
 //! Cost of the shape stage per particle, and against splashsurf's neighbour search alone.
 //!
-//! `cargo bench --bench shape`, or with `-- --quick` for fewer and smaller runs. The two run
+//! `cargo bench --package fluid_benches --bench shape`, or with `-- --quick` for fewer and smaller runs. The two run
 //! in turn on the same particles, so that a busy machine slows both; medians are shown.
 
 use std::time::{Duration, Instant};

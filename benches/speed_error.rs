@@ -1,6 +1,6 @@
 //! Speed against error: every method with its parameters on every scene, in one run.
 //!
-//! `cargo bench --bench speed_error -- --out DIR`, with `--quick` for a few small pictures,
+//! `cargo bench --package fluid_benches --bench speed_error -- --out DIR`, with `--quick` for a few small pictures,
 //! `--scene NAME` and `--method NAME` for a part, `--size WxH` for the two simulated scenes. The
 //! folder gets a table (CSV), plots (SVG and PNG) and a summary.
 

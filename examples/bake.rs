@@ -2,18 +2,19 @@
 //! "wave" (about 100,000 particles) and "step" (about 50,000), in the thesis's sizes.
 //!
 //! ```text
-//! cargo run --release --example bake -- wave --out assets/wave.xyz
+//! cargo run --release --features simulation --example bake -- wave --out assets/wave.xyz
 //! ```
 //! Takes a quarter of an hour on two cores. Draw the result with the viewer, `--radius 0.025`.
+
+mod simulation;
 
 use std::{fs, path::PathBuf, process::ExitCode};
 
 use bevy::prelude::*;
 use clap::{Parser, ValueEnum};
-use fluid_stage::{
-    parse_args,
-    simulation::{Simulation, dam, lattice},
-};
+use fluid_stage::{dam, lattice, parse_args};
+
+use simulation::Simulation;
 
 /// Particle radius, m.
 const RADIUS: f32 = 0.025;

@@ -1,16 +1,14 @@
-//! A dam breaks in a glass tank, simulated while you watch; a crate, a plank and a ball are carried
-//! away.
+//! A dam breaks in a glass tank, simulated live; a crate, a plank and a ball are carried away.
 //!
-//! Liquid runs past an opaque pillar that stands in it; a ball lies in front of the tank, pillars
-//! stand behind it. Turn the camera with the mouse; press R to start over. `--out FILE.png
-//! [--frames N]` writes a picture instead.
+//! Liquid runs past an opaque pillar; a ball lies in front of the tank, pillars stand behind it.
+//! Turn the camera with the mouse; press R to start over. `--out FILE.png [--frames N]` writes a
+//! picture instead.
 
 use bevy::{math::bounding::Aabb3d, prelude::*};
 use bevy_fluid::prelude::*;
 use fluid_stage::{
-    StagePlugins,
+    StagePlugins, dam,
     scenery::{Scenery, frame_camera, orbit_camera},
-    simulation::dam,
 };
 
 /// Inside of the tank, m.
@@ -23,7 +21,7 @@ const RADIUS: f32 = 0.025;
 const PILLAR: (Vec2, f32) = (vec2(0.45, -0.1), 0.13);
 const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 
-/// What floats, and where it starts.
+/// A floating body and its initial transform.
 #[derive(Component)]
 struct Floating(Transform);
 
@@ -35,7 +33,7 @@ fn main() -> AppExit {
     };
     let stage = stage.with_args();
     let mode = match stage.out {
-        // A picture waits for its water.
+        // A picture needs the simulation in step with its frames.
         Some(_) => SalvaMode::Lockstep,
         None => SalvaMode::Background,
     };
@@ -127,7 +125,8 @@ fn opaque<'a>(
         .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
 }
 
-/// What is written by anybody else is taken over, at rest.
+/// Restarts the scene: the simulation takes over positions and transforms written by others, at
+/// rest.
 fn restart(
     mut fluids: Query<&mut FluidParticles>,
     mut floating: Query<(&Floating, &mut Transform)>,

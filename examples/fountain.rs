@@ -1,5 +1,5 @@
 //! A fountain: a jet rises from a ball and falls back over it, six more meet above it from the
-//! basin's rim. What falls splashes on the ball and on the water in the basin.
+//! basin's rim. The falling water splashes on the ball and on the water in the basin.
 //!
 //! Turn the camera with the mouse; press Space to turn the water off and on, Enter for a burst.
 //! `--out FILE.png [--frames N]` writes a picture instead. Try a `FluidMaterial::INK`.
@@ -39,7 +39,7 @@ fn main() -> AppExit {
         .run()
 }
 
-/// Everything that water comes out of.
+/// The emitters, and the water in the basin.
 fn water(mut commands: Commands) {
     let (radius, height) = BALL;
     commands.spawn((
@@ -71,7 +71,7 @@ fn water(mut commands: Commands) {
             aim,
         ));
     }
-    // What falls onto the water in the basin splashes up.
+    // Drops that fall onto the water in the basin splash up.
     commands.spawn((
         ParticleCollider {
             restitution: 0.35,
@@ -80,7 +80,7 @@ fn water(mut commands: Commands) {
         },
         Transform::from_xyz(0.0, DEPTH, 0.0),
     ));
-    // Of a material of its own, it is a body of its own, which the jets are seen before.
+    // With a material of its own, this is a separate body, drawn behind the jets.
     let deep = FluidMaterial {
         medium: Medium::absorbing(LinearRgba::rgb(0.25, 0.7, 0.75), 0.6),
         ..FluidMaterial::WATER
@@ -108,7 +108,7 @@ fn around(i: u32, count: u32, radius: f32) -> Vec3 {
     vec3(place.x, 0.0, place.y)
 }
 
-/// What stands there, and what of it water bounces off.
+/// The scenery and its colliders.
 fn scene(mut scenery: Scenery) {
     scenery.checker_floor(Vec3::ZERO, 6.0, 24);
     scenery.sun(TO_SUN, 12.0, true);

@@ -1,7 +1,7 @@
 //! The inspector's window over a pool, a ball and a few drops of water.
 //!
-//! F1 closes and opens it; turn the camera with the mouse beside it. Press Tab to go from setting
-//! to setting, arrows to change one. `--out FILE.png` writes a picture instead.
+//! F1 closes and opens it; the mouse turns the camera outside the window. Press Tab to go from
+//! setting to setting, arrows to change one. `--out FILE.png` writes a picture instead.
 //!
 //! Needs `--features inspector`.
 
@@ -33,7 +33,7 @@ fn main() -> AppExit {
         ))
         .configure_sets(
             PostUpdate,
-            // The mouse belongs to the window where it is over it.
+            // Over the window, the mouse does not move the camera.
             PanOrbitCameraSystemSet.run_if(not(inspector_wants_pointer)),
         )
         .add_systems(Startup, setup)

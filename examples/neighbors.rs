@@ -1,5 +1,5 @@
-//! Several fluids in one view, in both orders of depth: honey before water and water before
-//! honey; smoke before a pool and behind one.
+//! Several fluids in one view, in both orders of depth: honey in front of water and water in front
+//! of honey; smoke in front of a pool and behind one.
 //!
 //! Turn the camera with the mouse: the order follows. `--out FILE.png` writes a picture instead.
 

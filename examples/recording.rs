@@ -1,13 +1,15 @@
-//! Records a breaking dam to numbered files, then plays them: twelve frames a second, between which
-//! every particle is interpolated by its id.
+//! Records a breaking dam to numbered files, then plays them at twelve frames per second,
+//! interpolating every particle by its id.
 //!
 //! ```text
 //! cargo run --release --features recordings --example recording
 //! cargo run --release --features recordings --example recording -- --file 'frames/dam_####.vtk'
 //! ```
-//! `--file` plays recordings of your own. Space pauses, left and right seek, B turns the time around;
-//! the mouse turns the camera. `--out FILE.png --time SECONDS [--frames N]` writes a picture instead.
+//! `--file` plays recordings of your own. Space pauses, left and right seek, B reverses time; the
+//! mouse turns the camera. `--out FILE.png --time SECONDS [--frames N]` writes a picture instead.
 //! Try `--no-interpolation`, `--speed 0.2`.
+
+mod simulation;
 
 use std::{
     env,
@@ -32,12 +34,12 @@ use bevy_fluid::{
 };
 use clap::Parser;
 use fluid_stage::{
-    PendingPicture, StagePlugins, VIEW_SIZE, capture, headless_app, parse_args,
+    PendingPicture, StagePlugins, VIEW_SIZE, capture, dam, headless_app, parse_args,
     scenery::{Scenery, frame_camera, orbit_camera},
-    set_time_step, settle,
-    simulation::{Simulation, dam},
-    step,
+    set_time_step, settle, step,
 };
+
+use simulation::Simulation;
 
 /// Inside of the tank, m.
 const TANK: Vec3 = vec3(1.6, 0.9, 0.7);
@@ -45,11 +47,11 @@ const TANK: Vec3 = vec3(1.6, 0.9, 0.7);
 const DAM: Vec2 = vec2(0.6, 0.7);
 /// Particle radius of the dam, m: about 4,600 particles.
 const RADIUS: f32 = 0.02;
-/// Recorded frames of the dam per second: too few to be looked at without interpolation.
+/// Recorded frames of the dam per second: too few to look smooth without interpolation.
 const RATE: f32 = 12.0;
 /// How long the dam is recorded, s.
 const SECONDS: f32 = 2.5;
-/// Of the simulation, and of the frames of a picture, s.
+/// Time step of the simulation and of a picture's frames, s.
 const STEP: f32 = 1.0 / 60.0;
 const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 
@@ -57,28 +59,28 @@ const TO_SUN: Vec3 = vec3(0.55, 0.9, 0.45);
 #[derive(Parser, Resource, Clone, Debug)]
 #[command(name = "recording")]
 struct Args {
-    /// What to play: one file, or numbered ones as in 'frames/dam_####.vtk'
+    /// The recording to play: one file, or numbered files as in 'frames/dam_####.vtk'
     #[arg(long)]
     file: Option<String>,
     /// Recorded frames per second of FILE
     #[arg(long, default_value = "30")]
     rate: f64,
-    /// Particle radius where FILE does not hold it
+    /// Particle radius if FILE does not hold it
     #[arg(long, default_value = "0.025")]
     radius: f32,
-    /// Where the dam is recorded to; a temporary folder if not given
+    /// Folder for the recording of the dam; a temporary folder if not given
     #[arg(long)]
     folder: Option<PathBuf>,
-    /// How fast it is played; negative is backwards
+    /// Playback speed; negative is backwards
     #[arg(long, default_value = "1", allow_hyphen_values = true)]
     speed: f32,
-    /// Show the frames as they are
+    /// Show the frames without interpolation
     #[arg(long)]
     no_interpolation: bool,
-    /// Without a window: the picture to write (PNG)
+    /// Write a picture (PNG) instead of opening a window
     #[arg(long)]
     out: Option<PathBuf>,
-    /// The moment that the picture shows, or from which its frames are played, in seconds
+    /// Time in seconds that the picture shows, or from which its frames are played
     #[arg(long, default_value = "0.7")]
     time: f64,
     /// Frames of 1/60 s that are played before the picture is taken
@@ -87,7 +89,7 @@ struct Args {
     /// Width and height in pixels
     #[arg(long, default_value = "1280x720", value_parser = size)]
     size: UVec2,
-    /// Whether it is the dam that is played.
+    /// Whether the dam is played.
     #[arg(skip)]
     is_dam: bool,
 }
@@ -106,7 +108,7 @@ fn run(mut args: Args) -> anyhow::Result<ExitCode> {
     match &args.file {
         Some(file) => {
             FramePattern::parse(file)?;
-            // Of the working folder, not of the assets.
+            // Relative to the working folder, not to the assets.
             args.file = Some(env::current_dir()?.join(file).display().to_string());
         }
         None => {
@@ -144,7 +146,7 @@ fn run(mut args: Args) -> anyhow::Result<ExitCode> {
         player.seek(time);
     }
     wait_for_frames(&mut app)?;
-    // The scene is built of the first frame that is there.
+    // The scene is built from the first loaded frame.
     settle(&mut app)?;
     for _ in 0..frames {
         set_time_step(&mut app, Duration::from_secs_f32(STEP));
@@ -202,7 +204,7 @@ fn record_dam(folder: &Path) -> anyhow::Result<String> {
     };
     let writer = RecordingWriter {
         rate: RATE,
-        // Nobody waits for these frames, but none may be lost.
+        // Nothing waits for these frames, but none may be lost.
         queue: usize::MAX,
         ..RecordingWriter::new(frames.clone())
     };
@@ -258,7 +260,7 @@ fn open(mut commands: Commands, args: Res<Args>, assets: Res<AssetServer>) {
     ));
 }
 
-/// Once there are particles: they say how large everything is.
+/// Builds the scene once there are particles, whose bounds set its size.
 fn build_scene(
     mut scenery: Scenery,
     args: Res<Args>,

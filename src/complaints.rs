@@ -1,4 +1,4 @@
-//! What has been said of whom, so that the same is not said again.
+//! Errors already logged for each entity, so that each is logged once.
 
 use bevy::ecs::entity::{Entity, EntityHashMap};
 
@@ -8,12 +8,12 @@ pub(crate) trait AboutField {
     fn field(&self) -> &'static str;
 }
 
-/// What has been said of whom.
+/// The field named by the last error logged for each entity.
 #[derive(Default)]
 pub(crate) struct Complaints(EntityHashMap<&'static str>);
 
 impl Complaints {
-    /// The error of an entity's settings, unless it has been said already.
+    /// Returns the error of an entity's settings, unless it has been logged already.
     pub(crate) fn of<E: AboutField>(
         &mut self,
         entity: Entity,
@@ -23,8 +23,8 @@ impl Complaints {
             self.0.remove(&entity);
             return None;
         };
-        // By what they name: a number that is none never equals itself, and one that is
-        // animated out of range would be said every frame.
+        // Errors are compared by field: NaN never equals itself, and a value that is animated out
+        // of range would be logged every frame.
         let before = self.0.insert(entity, error.field());
         (before != Some(error.field())).then_some(error)
     }

@@ -1,6 +1,6 @@
 //! Counts and times in Bevy's `DiagnosticsStore`, where any tool can show them.
 //!
-//! [`FluidDiagnosticsPlugin`] is not part of `FluidPlugin`; add it where figures are wanted:
+//! [`FluidDiagnosticsPlugin`] is not part of `FluidPlugin`; add it where you need figures:
 //!
 //! ```no_run
 //! use bevy::{diagnostic::LogDiagnosticsPlugin, prelude::*};
@@ -22,17 +22,17 @@
 //! | `fluid/bulk`, `fluid/interior`, `fluid/spray` | | particles of each class |
 //! | `fluid/dropped` | | particles whose position is not finite |
 //! | `fluid/shape/grid`, `…/classify`, `…/anisotropy`, `…/total` | ms | CPU time of the frame's shaping; 0 where nothing was shaped |
-//! | `fluid/emitted` | | particles that emitters have out, those that something else moves left out |
-//! | `fluid/recording/cached` | | frames that players hold, loading ones included; feature `recordings` |
-//! | `fluid/salva/particles` | | particles that are simulated live; feature `salva`, with `SalvaPlugin` |
+//! | `fluid/emitted` | | particles of emitters, without those that something else moves |
+//! | `fluid/recording/cached` | | frames in the players' memory, loading ones included; feature `recordings` |
+//! | `fluid/salva/particles` | | particles simulated live; feature `salva`, with `SalvaPlugin` |
 //! | `fluid/salva/step` | ms | CPU time of one of its steps, on its own threads |
-//! | `rain/bake_progress` | | how much of the rain's textures is drawn, 0 to 1; kept by `RainPlugin` alone |
-//! | `rain/bake_time` | ms | how long it took to draw all of them; likewise |
+//! | `rain/bake_progress` | | share of the rain's textures that is drawn, 0 to 1; recorded by `RainPlugin` itself |
+//! | `rain/bake_time` | ms | time to draw all of them; likewise |
 //! | `render/<pass>/elapsed_gpu` | ms | GPU time of a pass in [`PASSES`] or [`RAIN_PASSES`], all cameras |
 //! | `render/<pass>/elapsed_cpu` | ms | CPU time of recording it |
 //!
-//! The passes' times come from Bevy's [`RenderDiagnosticsPlugin`], which is added where it is
-//! missing; GPU times need an adapter with timestamp queries.
+//! The passes' times come from Bevy's [`RenderDiagnosticsPlugin`], which is added if missing; GPU
+//! times need an adapter with timestamp queries.
 
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
@@ -52,29 +52,29 @@ pub const BULK: DiagnosticPath = DiagnosticPath::const_new("fluid/bulk");
 pub const INTERIOR: DiagnosticPath = DiagnosticPath::const_new("fluid/interior");
 /// Spray particles.
 pub const SPRAY: DiagnosticPath = DiagnosticPath::const_new("fluid/spray");
-/// Particles left out because their position is not finite.
+/// Particles dropped because their position is not finite.
 pub const DROPPED: DiagnosticPath = DiagnosticPath::const_new("fluid/dropped");
-/// Sorting the particles of the fluids shaped in a frame into cells. Unit: ms.
+/// CPU time of sorting a frame's shaped particles into cells. Unit: ms.
 pub const SHAPE_GRID: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/grid");
-/// Telling their classes apart. Unit: ms.
+/// CPU time of classifying particles. Unit: ms.
 pub const SHAPE_CLASSIFY: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/classify");
-/// Making their ellipsoids. Unit: ms.
+/// CPU time of computing ellipsoids. Unit: ms.
 pub const SHAPE_ANISOTROPY: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/anisotropy");
-/// All of the shaping. Unit: ms.
+/// CPU time of all of the shaping. Unit: ms.
 pub const SHAPE_TOTAL: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/total");
-/// Particles that emitters have out.
+/// Particles of emitters, without those that something else moves.
 pub const EMITTED: DiagnosticPath = DiagnosticPath::const_new("fluid/emitted");
-/// Frames that players hold, loading ones included.
+/// Frames in the players' memory, loading ones included.
 #[cfg(feature = "recordings")]
 pub const CACHED_FRAMES: DiagnosticPath = DiagnosticPath::const_new("fluid/recording/cached");
-/// Particles that are simulated live.
+/// Particles simulated live.
 #[cfg(feature = "salva")]
 pub const SALVA_PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/particles");
-/// One step of live simulation, on its own threads. Unit: ms.
+/// CPU time of one step of live simulation, on its own threads. Unit: ms.
 #[cfg(feature = "salva")]
 pub const SALVA_STEP: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/step");
 
-/// The passes in their order, by the names of their time spans.
+/// Names of the passes' time spans, in the order of the passes.
 pub const PASSES: [&str; 7] = [
     "fluid_scene_depth",
     "fluid_splat",
@@ -85,21 +85,21 @@ pub const PASSES: [&str; 7] = [
     "fluid_composite",
 ];
 
-/// The passes with rain in them: the copy of the scene's depth, which is rain's alone, and Bevy's
-/// own pass for all that is transparent, in which rain is drawn.
+/// Passes that rain uses: the copy of the scene's depth, for rain only, and Bevy's own pass for
+/// transparent objects, in which rain is drawn.
 pub const RAIN_PASSES: [&str; 2] = ["rain_scene_depth", "main_transparent_pass_3d"];
 
-/// Where the GPU time of a pass is kept. Unit: ms.
+/// The path of a pass's GPU time. Unit: ms.
 pub fn gpu_time(pass: &str) -> DiagnosticPath {
     DiagnosticPath::new(format!("render/{pass}/elapsed_gpu"))
 }
 
-/// Where the CPU time of recording a pass is kept. Unit: ms.
+/// The path of the CPU time of recording a pass. Unit: ms.
 pub fn cpu_time(pass: &str) -> DiagnosticPath {
     DiagnosticPath::new(format!("render/{pass}/elapsed_cpu"))
 }
 
-/// Keeps the counts and times of all fluids in Bevy's `DiagnosticsStore`: see
+/// Records the counts and times of all fluids in Bevy's `DiagnosticsStore`: see
 /// [`diagnostics`](crate::diagnostics). Add it after `RenderDiagnosticsPlugin`, if you add that.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FluidDiagnosticsPlugin;

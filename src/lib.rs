@@ -1,4 +1,4 @@
-//! Particle liquids for Bevy, with up to four refractions in screen space; and rain.
+//! Particle liquids for Bevy, drawn in screen space with up to four refractions; and rain.
 //!
 //! A fluid is an entity with [`FluidParticles`] and a [`FluidMaterial`]; a camera with
 //! [`ScreenSpaceFluid`] draws it. Everything else has defaults.
@@ -23,61 +23,66 @@
 //!
 //! # From particles to picture
 //!
-//! 1. [`shape`], on the CPU, in [`FluidSystems::Shape`]: a grid finds each particle's neighbours;
-//!    few make it *spray*, many *bulk*, a full and balanced set *interior*, which is not drawn. The
-//!    neighbours' covariance stretches the splat of a bulk particle along the surface.
-//! 2. [`render`], on the GPU, ahead of Bevy's main pass: splats become four depth layers, front and
-//!    back of bulk and of spray; the bulk's are smoothed; normals follow from the fit, from depth,
-//!    or from the spray's ellipsoids; every pixel's ray is traced through up to four interfaces.
-//! 3. Between opaque and transparent things, the result is put over the scene: what the liquid
-//!    itself sends, and the background where the ray has gone.
+//! 1. [`shape`], on the CPU, in [`FluidSystems::Shape`]: a neighbourhood search on a grid
+//!    classifies each particle: few neighbours make it *spray*, many *bulk*, a full and balanced
+//!    set *interior*, which is not drawn. The covariance of its neighbours stretches the splat of a
+//!    bulk particle along the surface.
+//! 2. [`render`], on the GPU, before Bevy's main pass: splats become four depth layers, front and
+//!    back of bulk and of spray; the bulk layers are smoothed; normals come from the plane fit,
+//!    from depth, or from the spray's ellipsoids; the ray of every pixel is traced through up to
+//!    four interfaces.
+//! 3. Between opaque and transparent objects, the result is composited over the scene: the light
+//!    from the liquid itself, and the background that the refracted ray reaches.
 //!
-//! Only what a scene has is done: see [`render::plan`].
+//! Work that a scene does not need is skipped: see [`render::plan`].
 //!
 //! # Where particles come from
 //!
 //! - Your own code writes them into [`FluidParticles`].
-//! - A [`ParticleEmitter`] does so: particles come out of its nozzle, fly, bounce off every
-//!   [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and [`FluidSystems::Simulate`]. They
-//!   do not push each other.
-//! - With the feature `recordings`, a `RecordingPlayer` plays numbered particle files into them, loaded
+//! - A [`ParticleEmitter`] emits them: particles leave its nozzle, fly, bounce off every
+//!   [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and [`FluidSystems::Simulate`].
+//!   They do not push each other.
+//! - With the feature `recordings`, a `RecordingPlayer` plays back numbered particle files, loaded
 //!   in the background, and a `RecordingWriter` writes such files: see the module `recording`.
-//! - With the feature `salva`, `SalvaPlugin` simulates them live, among boundaries and floating bodies:
-//!   see the module `salva`.
+//! - With the feature `salva`, `SalvaPlugin` simulates them live, among boundaries and floating
+//!   bodies: see the module `salva`.
 //!
-//! # What they look like
+//! # Appearance
 //!
-//! A [`FluidMaterial`] is a refractive index and a [`Medium`]: what is inside scatters light, absorbs
-//! it and shines, each by a density and a colour, from clear water to milk, smoke and fire. Where
-//! nothing is refracted, [`Thickness`] says whether gaps between puffs count. [`SurfaceKernel`], on the
-//! fluid, sets how particles grow together; [`ScreenSpaceFluid`], on the camera, sets smoothing,
-//! [`Refractions`], [`Search`] and [`Fresnel`], with presets from `FAST` to `ACCURATE`.
+//! A [`FluidMaterial`] is a refractive index and a [`Medium`]. The medium scatters, absorbs and
+//! emits light, each with a density and a colour, from clear water to milk, smoke and fire. For
+//! fluids without refraction, [`Thickness`] sets whether gaps between puffs count.
+//! [`SurfaceKernel`], on the fluid, sets how particles merge into a surface; [`ScreenSpaceFluid`],
+//! on the camera, sets smoothing, [`Refractions`], [`Search`] and [`Fresnel`], with presets from
+//! `FAST` to `ACCURATE`.
 //!
 //! # Rain
 //!
-//! [`RainPlugin`] draws [`Rain`] for the camera that has it: streaks of falling drops, lit by the
-//! scene's lights, kept off by [`RainShelter`](rain::RainShelter)s. It needs nothing of [`FluidPlugin`];
-//! see [`rain`].
+//! [`RainPlugin`] draws [`Rain`] for the camera that has it: streaks of drops at terminal velocity,
+//! lit by the scene's lights and blocked by [`RainShelter`](rain::RainShelter)s. It does not need
+//! [`FluidPlugin`]; see [`rain`].
 //!
-//! # Looking inside
+//! # Inspector and diagnostics
 //!
-//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the passes'
-//! times and the debug views: F1 opens it. [`FluidDebugView`] chooses a debug view without it.
+//! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the time
+//! of each pass and the debug views: F1 opens it. Without it, [`FluidDebugView`] selects a debug
+//! view.
 //!
-//! [`FluidDiagnosticsPlugin`] keeps counts and times in Bevy's `DiagnosticsStore`, where any other tool
-//! finds them: see [`diagnostics`] for the paths.
+//! [`FluidDiagnosticsPlugin`] records counts and times in Bevy's `DiagnosticsStore`, where any
+//! other tool can read them: see [`diagnostics`] for the paths.
 //!
-//! # Where it comes from
+//! # Sources
 //!
-//! The layers, the planes and the order of refractions are those of T. Imai's master's thesis
-//! (University of Tsukuba, 2016), the kernels Yu and Turk's (2013, equations 9 to 11: [`shape`]), the
-//! medium that of an article on a simple volume model (its equation: [`Medium`]). Other ways of
-//! smoothing are Truong and Yuksel's (2018, [`NarrowRange`]) and van der Laan, Green and Sainz's (2009,
-//! [`CurvatureFlow`]). Rain follows Yoshida, Dobashi and Yamamoto, with the drops of Marshall and Palmer
-//! (1948) and the speeds of Gunn and Kinzer (1949): [`rain`]. Live simulation is salva3d's.
+//! The depth layers, the plane fit and the order of refractions come from T. Imai's master's thesis
+//! (University of Tsukuba, 2016), the kernels from Yu and Turk (2013, equations 9 to 11:
+//! [`shape`]), the medium from an article on a simple volume model (its equation: [`Medium`]).
+//! Other smoothing methods are those of Truong and Yuksel (2018, [`NarrowRange`]) and of van der
+//! Laan, Green and Sainz (2009, [`CurvatureFlow`]). Rain follows Yoshida, Dobashi and Yamamoto,
+//! with the drop sizes of Marshall and Palmer (1948) and the terminal velocities of Gunn and Kinzer
+//! (1949): [`rain`]. Live simulation uses salva3d.
 //!
-//! What holds for any input, what does not, and where 32-bit floats end, is in `docs/stability.md`,
-//! with the fifty hard cases that are tested.
+//! `docs/stability.md` lists what is guaranteed for any input, what is not, and the limits of
+//! 32-bit floats, with the fifty hard cases that are tested.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -126,7 +131,7 @@ pub use crate::{
     shape::SurfaceKernel,
 };
 
-/// What most programs need.
+/// Types that most programs need.
 pub mod prelude {
     #[cfg(feature = "salva")]
     pub use crate::salva::{
@@ -144,9 +149,9 @@ pub mod prelude {
 pub struct FluidPlugin {
     /// How the depth layers are drawn; leave it at its default unless you test adapters.
     pub layer_blending: LayerBlending,
-    /// Whether work is left out that a material makes needless (see [`render::plan`]): the
-    /// search in a fluid of refractive index 1, what is behind an opaque one, the terms that a
-    /// medium lacks. Default: true; leave it there unless you test that nothing is missed.
+    /// Whether work that a material does not need is skipped (see [`render::plan`]): the search in
+    /// a fluid of refractive index 1, everything behind an opaque fluid, the terms that a medium
+    /// lacks. Default: true; leave it there unless you test that skipping changes nothing.
     pub shortcuts: bool,
 }
 
@@ -181,7 +186,7 @@ impl Plugin for FluidPlugin {
     }
 }
 
-/// The README's code is compiled with the doc tests, where the features are there that it shows.
+/// Compiles the README's code with the doc tests when the features that it shows are enabled.
 #[cfg(all(doctest, feature = "recordings", feature = "salva"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

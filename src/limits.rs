@@ -1,6 +1,6 @@
-//! Numbers that a user sets, and the ranges that they must be in.
+//! Numbers that users set, and their ranges.
 
-/// A number, the range that it must be in, and what stands in for one that is none.
+/// A number, its range, and the value that replaces NaN.
 pub(crate) struct Limited<'a> {
     pub(crate) name: &'static str,
     pub(crate) value: &'a mut f32,
@@ -30,7 +30,7 @@ impl<'a> Limited<'a> {
         (self.min..=self.max).contains(self.value)
     }
 
-    /// Moves what is out of its range to its end.
+    /// Clamps the value to its range, and replaces NaN by `absent`.
     pub(crate) fn clamp(&mut self) {
         *self.value = if self.value.is_nan() {
             self.absent

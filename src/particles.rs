@@ -1,4 +1,4 @@
-//! Particles as a component, and the system that has them shaped.
+//! The particle component, and the system that shapes fluids.
 
 use bevy::prelude::*;
 
@@ -11,8 +11,8 @@ use crate::{
 
 /// A fluid: particles of one radius in the entity's space.
 ///
-/// Changing this component (or the [`SurfaceKernel`] beside it) is the only thing that has the
-/// fluid shaped anew; an unchanged fluid costs nothing.
+/// A fluid is shaped again only when this component, or the [`SurfaceKernel`] on its entity,
+/// changes; an unchanged fluid costs nothing.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Clone)]
 #[require(FluidMaterial, SurfaceKernel, ShapedFluid, Transform, Visibility)]
@@ -21,7 +21,7 @@ pub struct FluidParticles {
     /// dropped and counted in [`ShapedFluid::dropped`].
     pub positions: Vec<Vec3>,
     /// Radius of every particle, half the distance between neighbours at rest. Unit: m, range
-    /// 1e-9..=1e9, default 0, which only a fluid without particles may have.
+    /// 1e-9..=1e9, default 0, valid only without particles.
     #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open())]
     pub radius: f32,
 }
@@ -33,13 +33,13 @@ impl FluidParticles {
     }
 }
 
-/// What the shape stage made of a fluid. The splats themselves go to the render world.
+/// The result of shaping a fluid. The splats themselves go to the render world.
 #[derive(Component, Clone, Debug, Default)]
 pub struct ShapedFluid {
     pub(crate) splats: FluidSplats,
     fresh: bool,
     generation: u64,
-    /// Why the fluid is not drawn, said when it changes.
+    /// Why the fluid is not drawn; logged when it changes.
     error: Option<String>,
 }
 
@@ -59,7 +59,7 @@ impl ShapedFluid {
         self.splats.spray
     }
 
-    /// Number of particles left out because their position is not finite.
+    /// Number of particles dropped because their position is not finite.
     pub fn dropped(&self) -> u32 {
         self.splats.dropped
     }
@@ -69,12 +69,12 @@ impl ShapedFluid {
         self.splats.times
     }
 
-    /// How often the fluid has been shaped.
+    /// How many times the fluid has been shaped.
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// Whether the splats are new since this was last asked.
+    /// Whether the splats are new since the last call.
     pub(crate) fn take_fresh(&mut self) -> bool {
         core::mem::take(&mut self.fresh)
     }

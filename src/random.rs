@@ -1,6 +1,6 @@
-//! Random numbers that are the same on every machine.
+//! Deterministic random numbers, the same on every machine.
 
-/// `SplitMix64` (Steele, Lea and Flood 2014): enough for where drops and particles are.
+/// `SplitMix64` (Steele, Lea and Flood 2014): good enough to place drops and particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Random(u64);
 

@@ -1,9 +1,9 @@
-//! Where a setting's values lie, for whatever edits settings.
+//! Ranges of settings, for editors.
 
 use bevy::reflect::{NamedField, Reflect, UnnamedField};
 
-/// Between which values a setting makes sense, and in which unit: an attribute of reflected fields,
-/// which editors such as the inspector read. It enforces nothing.
+/// The range and the unit of a setting: an attribute of reflected fields, read by editors such as
+/// the inspector. It enforces nothing.
 ///
 /// ```
 /// use bevy::reflect::{Reflect, TypeInfo, Typed};
@@ -26,19 +26,19 @@ pub struct SettingRange {
     pub min: f64,
     /// The greatest value.
     pub max: f64,
-    /// What is counted, as it stands behind a number; empty for pure numbers.
+    /// The unit, as written after a number; empty for pure numbers.
     pub unit: &'static str,
     /// Whether values span orders of magnitude.
     pub logarithmic: bool,
-    /// Whether values beyond `max` make sense too, rare as they are.
+    /// Whether values beyond `max` are valid too, if rare.
     pub open: bool,
-    /// What the field of an enum's variant is when the variant is chosen; the nearest to 1 where
-    /// this is not a number.
+    /// The initial value of an enum variant's field when the variant is chosen; the value nearest
+    /// to 1 where this is NaN.
     pub start: f64,
 }
 
 impl SettingRange {
-    /// From `min` to `max`, linear and without a unit.
+    /// A range from `min` to `max`, linear and without a unit.
     pub const fn new(min: f64, max: f64) -> Self {
         Self {
             min,
@@ -50,12 +50,12 @@ impl SettingRange {
         }
     }
 
-    /// With a unit.
+    /// The same range with a unit.
     pub const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// Over orders of magnitude.
+    /// The same range over orders of magnitude.
     pub const fn logarithmic(self) -> Self {
         Self {
             logarithmic: true,
@@ -63,12 +63,12 @@ impl SettingRange {
         }
     }
 
-    /// Larger values are possible too.
+    /// The same range with larger values allowed.
     pub const fn open(self) -> Self {
         Self { open: true, ..self }
     }
 
-    /// With a value to begin with.
+    /// The same range with an initial value.
     pub const fn start(self, start: f64) -> Self {
         Self { start, ..self }
     }
@@ -83,7 +83,7 @@ impl SettingRange {
         field.get_attribute()
     }
 
-    /// What a value is to begin with.
+    /// The initial value.
     pub fn first(&self) -> f64 {
         let start = if self.start.is_nan() { 1.0 } else { self.start };
         start.clamp(self.min, self.max)

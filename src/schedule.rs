@@ -2,10 +2,10 @@
 
 use bevy::prelude::*;
 
-/// What happens to particles within a frame, in this order, in [`PostUpdate`].
+/// The stages of particles within a frame, in this order, in [`PostUpdate`].
 ///
-/// A system that writes [`FluidParticles`](crate::FluidParticles) anywhere before
-/// [`FluidSystems::Shape`] sees its change on screen in the same frame.
+/// Changes made to [`FluidParticles`](crate::FluidParticles) anywhere before
+/// [`FluidSystems::Shape`] are on screen in the same frame.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub enum FluidSystems {
     /// Particles are created and destroyed.

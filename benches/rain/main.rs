@@ -1,6 +1,6 @@
 //! Speed of rain against its error: streaks on billboards beside every drop drawn by itself.
 //!
-//! `cargo bench --bench rain`, with `-- --quick` for fewer and smaller runs and `-- --out DIR` for
+//! `cargo bench --package fluid_benches --bench rain`, with `-- --quick` for fewer and smaller runs and `-- --out DIR` for
 //! where the table (`rain.csv`) and the summary (`rain.md`) go. The two methods draw in turn, so
 //! that a busy machine slows both.
 

@@ -43,7 +43,7 @@ fn summary(
     writeln!(text, "# Rain: speed against error\n")?;
     writeln!(
         text,
-        "Written by `cargo bench --bench rain{}` on {adapter}, {} threads. Times on a software \
+        "Written by `cargo bench --package fluid_benches --bench rain{}` on {adapter}, {} threads. Times on a software \
          renderer are ratios, not absolutes.\n",
         if quick { " -- --quick" } else { "" },
         rayon::current_num_threads(),

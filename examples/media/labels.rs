@@ -12,7 +12,7 @@ use fluid_stage::scenery::Scenery;
 /// Height of a line in texels and in metres.
 const LINE: (f32, f32) = (48.0, 0.115);
 
-/// A word in front of a shelf, its middle here.
+/// A word in front of a shelf, centred at `at`.
 pub(crate) fn label(scenery: &mut Scenery, text: &str, at: Vec3) {
     let image = draw(text);
     let size = image.size().as_vec2() * LINE.1 / LINE.0;
@@ -34,7 +34,7 @@ pub(crate) fn label(scenery: &mut Scenery, text: &str, at: Vec3) {
     ));
 }
 
-/// White letters on nothing, which the material dyes.
+/// White letters on a transparent background; the material colours them.
 fn draw(text: &str) -> Image {
     let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
         .expect("a font that comes with its crate");

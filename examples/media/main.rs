@@ -1,9 +1,9 @@
-//! What may be inside a fluid. Above: the seven combinations of scattering, absorption and
-//! emission in balls that bend no light. Below: water, ink, milk and honey, and smoke and fire
-//! from particles. An opaque, banded post stands in or behind each.
+//! Media inside fluids. Above: the seven combinations of scattering, absorption and emission in
+//! balls without refraction. Below: water, ink, milk and honey, and smoke and fire from particles.
+//! An opaque, banded post stands in or behind each.
 //!
-//! Turn the camera with the mouse; press N for night and day: what scatters darkens, what shines
-//! does not. `--out FILE.png [--frames N]` writes a picture instead.
+//! Turn the camera with the mouse; press N for night and day: scattering media darken, emitting
+//! media do not. `--out FILE.png [--frames N]` writes a picture instead.
 
 mod labels;
 mod plumes;
@@ -28,13 +28,13 @@ const PLACE: Vec2 = vec2(1.15, 1.75);
 const BALL: f32 = 0.42;
 const RADIUS: f32 = 0.028;
 const TO_SUN: Vec3 = vec3(0.35, 0.8, 0.6);
-/// cd/m² that are shown white: what emissions are given in.
+/// Luminance that is shown as white, the unit of the emissions below. Unit: cd/m².
 const WHITE: f32 = 1000.0;
 
 fn main() -> AppExit {
     let stage = StagePlugins {
         size: uvec2(1600, 800),
-        // Where a plume is follows from the time alone.
+        // The state of a plume depends on the time alone.
         frames: 5,
         time_step: Duration::from_secs_f32(0.7),
         title: "media · bevy_fluid".into(),
@@ -152,7 +152,7 @@ fn shelf(scenery: &mut Scenery, at: Vec3) {
     ));
 }
 
-/// An opaque post of coloured bands, its foot here.
+/// An opaque post of coloured bands, with its foot at `foot`.
 fn post(scenery: &mut Scenery, foot: Vec3) {
     let band = scenery.meshes.add(Cylinder::new(0.09, 0.14));
     for i in 0..8 {
@@ -174,7 +174,7 @@ fn post(scenery: &mut Scenery, foot: Vec3) {
     }
 }
 
-/// A ball that rests on this foot.
+/// A ball that rests on `foot`.
 fn ball(scenery: &mut Scenery, foot: Vec3, material: FluidMaterial) {
     scenery.commands.spawn((
         FluidParticles::new(fluid_stage::ball(BALL, RADIUS), RADIUS),
@@ -189,7 +189,7 @@ struct Day {
     shines: bool,
 }
 
-/// Puts out the sun and the sky, or lights them again.
+/// Turns the sun and the sky off or on.
 fn night(
     keys: Res<ButtonInput<KeyCode>>,
     mut day: ResMut<Day>,

@@ -1,5 +1,4 @@
-//! Smoke and fire: particles that rise and are born again. Where each is follows from the time
-//! alone.
+//! Smoke and fire: particles that rise and are reborn. Their positions depend on the time alone.
 
 use std::f32::consts::TAU;
 
@@ -25,7 +24,7 @@ pub(crate) struct Plume {
     puff: [f32; 2],
     /// How far the wind carries the column at its top, m.
     sway: f32,
-    /// How much longer than wide a puff is.
+    /// Height of a puff over its width.
     stretch: f32,
     /// Flames that rise side by side; 0: one column.
     tongues: u32,
@@ -115,20 +114,20 @@ impl Plume {
                 (0.45 * self.foot * Vec2::from_angle(phase) + 0.6 * aside) * wide
             }
         };
-        // Waves that travel up the column carry all its puffs alike.
+        // Waves that travel up the column move all its puffs alike.
         let wave = |speed: f32, shift: f32| (5.0 * rise - speed * seconds + shift + phase).sin();
         let sway = self.sway * rise * vec2(wave(1.7, 0.0) + 0.5 * wave(3.1, 1.0), wave(2.3, 2.0));
         let along = around + sway;
         vec3(along.x, 0.05 + self.height * rise, along.y)
     }
 
-    /// How far a flame reaches at a time, of its full height.
+    /// Height of a flame at a time, as a fraction of its full height.
     fn flicker(&self, tongue: Option<u32>, seconds: f32) -> f32 {
         1.0 - tongue.map_or(0.0, |_| 0.25 * (5.0 * seconds).sin().powi(2))
     }
 }
 
-/// A medium of so much less matter: many puffs overlap at every place.
+/// The medium with a `share` of its matter: many puffs overlap at every place.
 const fn thin(medium: Medium, share: f32) -> Medium {
     let LinearRgba {
         red, green, blue, ..

@@ -1,12 +1,12 @@
-//! Rain in a street: at night in the light of a lamp and of a car, and on an overcast day; there is
-//! a fountain of liquid in it.
+//! Rain in a street with a fountain of liquid: at night in the light of a lamp and of a car, and on
+//! an overcast day.
 //!
 //! ```text
 //! cargo run --release --example rain -- --scene headlights --rate 20 --out rain.png
 //! ```
-//! The scenes `headlights`, `driver`, `lamp` and `under-lamp` are the rain paper's two applications,
-//! each from its two viewpoints; `day` is overcast, `shelter` looks out from under a roof. Try
-//! `--wind 6,0`, `--exposure 0.033`, `--per-drop`.
+//! The scenes `headlights`, `driver`, `lamp` and `under-lamp` are the rain paper's two
+//! applications, each from its two viewpoints; `day` is overcast, `shelter` looks out from under a
+//! roof. Try `--wind 6,0`, `--exposure 0.033`, `--per-drop`.
 
 mod street;
 
@@ -24,7 +24,7 @@ use fluid_stage::{StagePlugins, VIEW_SIZE, parse_args, scenery::Scenery};
 #[derive(Parser, Resource, Clone, Debug)]
 #[command(name = "rain")]
 struct Args {
-    /// What is seen
+    /// The scene to draw
     #[arg(long, value_enum, default_value_t = Scene::Headlights)]
     scene: Scene,
     /// Rain rate in mm/h: 1 is drizzle, 20 heavy, 75 a cloudburst
@@ -36,16 +36,16 @@ struct Args {
     /// Wind along x and z in m/s
     #[arg(long, default_value = "0,0", value_parser = pair, allow_hyphen_values = true)]
     wind: Vec2,
-    /// Exposure time in seconds; that of a frame if not given
+    /// Exposure time in seconds; the time of a frame if not given
     #[arg(long)]
     exposure: Option<f32>,
-    /// How bright drops are against what water scatters
+    /// Brightness of drops relative to the light that real drops scatter
     #[arg(long, default_value = "1")]
     brightness: f32,
-    /// Every drop by itself
+    /// Draw every drop individually
     #[arg(long)]
     per_drop: bool,
-    /// Without a window: the picture to write (PNG)
+    /// Write a picture (PNG) instead of opening a window
     #[arg(long)]
     out: Option<PathBuf>,
     /// Width and height in pixels
@@ -77,7 +77,7 @@ impl Scene {
         !matches!(self, Self::Day | Self::Shelter)
     }
 
-    /// The eye and what it looks at.
+    /// The eye and its target.
     fn view(self) -> (Vec3, Vec3) {
         match self {
             Self::Headlights => (vec3(5.2, 1.5, 3.6), vec3(0.2, 0.7, -0.4)),

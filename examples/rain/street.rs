@@ -16,7 +16,7 @@ use fluid_stage::scenery::Scenery;
 
 /// The lamp's head.
 const LAMP: Vec3 = vec3(-1.2, 4.2, -3.2);
-/// Where the car's headlights are, and where they shine.
+/// Positions and direction of the car's headlights.
 const HEADLIGHTS: [Vec3; 2] = [vec3(0.0, 0.65, -0.3), vec3(0.0, 0.65, 0.9)];
 const AHEAD: Vec3 = vec3(1.0, -0.06, 0.0);
 /// The fountain: centre of its floor, half of the sides of its water, particle radii of that and of
@@ -28,9 +28,9 @@ const DROP: f32 = 0.016;
 /// Texels along a face of the sky.
 const SKY_SIDE: u32 = 32;
 
-/// What lights the scene and what the camera needs for it.
+/// Spawns the lights and returns the components that the camera needs for them.
 pub(crate) fn light(scenery: &mut Scenery, night: bool) -> impl Bundle + use<> {
-    // At night the town's glow.
+    // At night, the glow of the town.
     let brightness = if night { 0.03 } else { 1400.0 };
     let sky = scenery.images.add(overcast());
     if night {
@@ -58,8 +58,8 @@ pub(crate) fn light(scenery: &mut Scenery, night: bool) -> impl Bundle + use<> {
     )
 }
 
-/// An overcast sky as the CIE has it, three times as bright above as at the horizon, over grey
-/// ground. So smooth that it serves as its own blur.
+/// The CIE's overcast sky, three times as bright above as at the horizon, over grey ground. It is
+/// so smooth that it serves as its own blur.
 fn overcast() -> Image {
     let mut texels = Vec::new();
     for face in 0..6 {
@@ -170,7 +170,7 @@ pub(crate) fn build(scenery: &mut Scenery, night: bool) {
         for (storey, y) in [1.7, 4.1].into_iter().enumerate() {
             for (side, window) in [-1.2, 1.2].into_iter().enumerate() {
                 let at = vec3(x + window, y, -6.4);
-                // At night somebody is at home.
+                // At night some windows are lit.
                 let lit = night && (usize::from(house) + 2 * storey + 3 * side) % 5 == 0;
                 let glass = Color::srgb(0.08, 0.09, 0.11);
                 let entity = block(scenery, at, vec3(1.0, 1.4, 0.06), glass);
@@ -208,7 +208,7 @@ pub(crate) fn build(scenery: &mut Scenery, night: bool) {
     fountain(scenery);
 }
 
-/// Its headlights are where [`HEADLIGHTS`] says.
+/// A car with headlights at [`HEADLIGHTS`].
 fn car(scenery: &mut Scenery) {
     let paint = Color::srgb(0.35, 0.05, 0.06);
     let glass = Color::srgb(0.03, 0.035, 0.04);

@@ -24,10 +24,10 @@ pub(crate) struct Args {
     /// Width and height in pixels
     #[arg(long, default_value = "640x480", value_parser = size)]
     pub(crate) size: UVec2,
-    /// Where the camera stands; chosen from the particles' bounds if not given
+    /// Position of the camera; chosen from the particles' bounds if not given
     #[arg(long, value_parser = vector, allow_hyphen_values = true)]
     pub(crate) eye: Option<Vec3>,
-    /// What the camera looks at
+    /// Point that the camera looks at
     #[arg(long, value_parser = vector, allow_hyphen_values = true)]
     pub(crate) look_at: Option<Vec3>,
     /// Vertical field of view in degrees
@@ -39,13 +39,13 @@ pub(crate) struct Args {
     /// How the bulk is smoothed
     #[arg(long, value_enum, default_value_t = SmoothingArg::PlaneFitSeparable)]
     pub(crate) smoothing: SmoothingArg,
-    /// How many interfaces are refracted
+    /// Number of interfaces that are refracted
     #[arg(long, default_value = "4", value_parser = PossibleValuesParser::new(["0", "1", "2", "4"]))]
     refractions: String,
     /// How the next interface is found
     #[arg(long, value_enum, default_value_t = SearchArg::Bracketed)]
     search: SearchArg,
-    /// How much an interface reflects
+    /// How the Fresnel reflectance of an interface is computed
     #[arg(long, value_enum, default_value_t = FresnelArg::Exact)]
     fresnel: FresnelArg,
     /// Spheres instead of anisotropic kernels

@@ -50,7 +50,7 @@ impl Plugin for ScenePlugin {
     }
 }
 
-/// The box around the particles that are somewhere.
+/// The box around the particles with finite positions.
 fn bounds(scene: &ScenePlugin) -> Aabb3d {
     let (min, max) = scene
         .positions

@@ -41,7 +41,7 @@ struct GpuTimes {
     composite: Option<f64>,
 }
 
-/// Complains now rather than after rendering.
+/// Fails now rather than after rendering.
 pub(crate) fn check_writable(path: &Path) -> anyhow::Result<&Path> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -53,8 +53,8 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<&Path> {
         .ok_or_else(|| anyhow!("cannot write {}: no such folder", path.display()))
 }
 
-/// Steps `frames` frames. To `measure`, the particles count as changed in each of them, so that
-/// each has them shaped, and what was timed before is forgotten.
+/// Steps `frames` frames. If `measure` is set, the particles count as changed in every frame, so
+/// that they are shaped in each, and earlier times are discarded.
 pub(crate) fn step(app: &mut App, frames: u32, measure: bool) -> Vec<ShapeTimes> {
     if !measure {
         fluid_stage::step(app, frames);
@@ -125,7 +125,7 @@ pub(crate) fn gather(app: &App, times: &[ShapeTimes]) -> anyhow::Result<String> 
     Ok(serde_json::to_string_pretty(&stats)? + "\n")
 }
 
-/// Pixels that show liquid: those whose path is marked as there.
+/// Number of pixels that show liquid: those whose exit flags contain a path.
 fn fluid_pixels(app: &App) -> anyhow::Result<usize> {
     let render = app.sub_app(RenderApp).world();
     let Some(view) = render

@@ -1,4 +1,4 @@
-//! Emitters and colliders that make no sense: what is said, and what is done.
+//! Invalid settings of emitters and colliders: how they are logged and clamped.
 
 use core::f32::consts::PI;
 
@@ -11,10 +11,10 @@ use crate::{
     limits::Limited,
 };
 
-/// More particles than this are no use to anyone, and would take gigabytes.
+/// More particles than this are of no use, and would take gigabytes.
 const MAX_PARTICLES: u32 = 10_000_000;
 
-/// Why an emitter or a collider makes no sense.
+/// Why an emitter or a collider is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum EmitterError {
@@ -32,16 +32,16 @@ pub enum EmitterError {
         /// Largest value allowed.
         max: f32,
     },
-    /// A direction that leads nowhere.
+    /// The direction is zero or not finite.
     #[error("`ParticleEmitter::direction` is {0}; it must be finite and not zero")]
     Direction(Vec3),
-    /// More particles than there can be.
+    /// The capacity is out of its range.
     #[error("`ParticleEmitter::capacity` is {0}; it must be from 0 to {MAX_PARTICLES}")]
     Capacity(u32),
-    /// A box that nothing is in.
+    /// The bounds enclose nothing.
     #[error("`ParticleEmitter::bounds` are from {} to {}; min must not exceed max", .0.min, .0.max)]
     Bounds(EmitterBounds),
-    /// A transform without an inverse: there is no place for particles in the entity's space.
+    /// The transform has no inverse, so particles have no place in the entity's space.
     #[error("its `GlobalTransform` has no inverse")]
     Transform,
 }
@@ -117,7 +117,7 @@ impl ParticleEmitter {
             return Err(EmitterError::Capacity(self.capacity));
         }
         match self.bounds {
-            // Not so for NaN either.
+            // Also true for NaN.
             Some(bounds) if !bounds.min.cmple(bounds.max).all() => {
                 Err(EmitterError::Bounds(bounds))
             }
@@ -125,8 +125,8 @@ impl ParticleEmitter {
         }
     }
 
-    /// The nearest settings that make sense: what is out of range is moved to its end, what is no
-    /// number gives way to the default, bounds that nothing is in to none.
+    /// These settings, clamped to their ranges. NaN and invalid directions are replaced by the
+    /// default, empty bounds by none.
     pub fn clamped(&self) -> Self {
         let mut clamped = *self;
         clamped.fields().iter_mut().for_each(Limited::clamp);
@@ -197,8 +197,7 @@ impl ParticleCollider {
         })
     }
 
-    /// The nearest collider that makes sense: what is out of range is moved to its end, what is no
-    /// number gives way to the default.
+    /// This collider, clamped to its ranges. NaN is replaced by the default.
     pub fn clamped(&self) -> Self {
         let mut clamped = *self;
         clamped.with_fields(|fields| fields.iter_mut().for_each(Limited::clamp));
@@ -217,7 +216,7 @@ pub(super) fn check_emitters(
 ) {
     for entity in gone_emitters.read() {
         of_emitters.forget(entity);
-        // One that is put back later, and elsewhere, has not come all the way from here.
+        // An emitter that is inserted again elsewhere has not moved there from here.
         if let Ok(mut emission) = emissions.get_mut(entity) {
             *emission = default();
         }

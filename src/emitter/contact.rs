@@ -1,4 +1,4 @@
-//! What a particle does where it meets a collider: it bounces, slides or stops.
+//! The contact of a particle with a collider: it bounces, slides or stops.
 
 use bevy::math::Vec3A;
 
@@ -64,8 +64,8 @@ impl Step<'_> {
         first
     }
 
-    /// Flies to the contact and returns how long that takes. Seconds are sought by Newton's method,
-    /// from those along the chord: where the flight meets the plane that touches there.
+    /// Flies to the contact and returns how long that takes. The time is found by Newton's method,
+    /// starting with that along the chord: where the flight meets the tangent plane of the contact.
     pub(super) fn approach(
         &self,
         contact: &Contact,
@@ -90,7 +90,7 @@ impl Step<'_> {
                 .normal
                 .dot(flight.velocity(*velocity) - contact.velocity);
             let correction = gap(needed, &flight) / speed;
-            // Where it does not come nearer, the chord has to do.
+            // Where it does not come nearer, the chord is used instead.
             if !(speed < 0.0 && correction.abs() < time) {
                 break;
             }
@@ -103,8 +103,8 @@ impl Step<'_> {
         needed
     }
 
-    /// Whether the particle leaves the collider again, with its velocity after that; else only what
-    /// is along the surface is left of it.
+    /// Whether the particle leaves the collider again. Sets its velocity after the bounce; without
+    /// one, only the part along the surface is left.
     pub(super) fn bounce(&self, contact: &Contact, velocity: &mut Vec3A) -> bool {
         let Contact {
             collider, normal, ..
@@ -118,7 +118,7 @@ impl Step<'_> {
             speed
         };
         let along = less(along, collider.friction * (rebound - speed));
-        // What would fall back within a step rests.
+        // A particle that would fall back within a step rests.
         let weight = -self.forces.gravity.dot(*normal);
         let leaves = 2.0 * rebound > weight * self.seconds;
         *velocity = contact.velocity + along;

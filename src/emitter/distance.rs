@@ -1,9 +1,8 @@
-//! How far a point is from a solid, and where a way into it begins.
+//! The distance of a point from a solid, and where a path enters it.
 //!
 //! All solids are convex. The distance along a straight way is then a convex function, and Newton's
 //! method from outside comes to its first root without ever passing it: the plane that it steps to
-//! has all of the solid behind it. So one distance each is all that a shape needs, and nothing
-//! tunnels.
+//! has all of the solid behind it. So each shape needs only a distance, and nothing tunnels.
 
 use bevy::math::Vec3A;
 
@@ -27,7 +26,7 @@ pub(super) enum Solid {
 
 /// Ways flatter than this along a surface do not lead into it.
 const GRAZE: f32 = 1e-4;
-/// Newton's steps double the right digits, but at a graze, where they halve the distance.
+/// Newton's steps double the correct digits, except at a graze, where they halve the distance.
 const STEPS: usize = 24;
 
 impl Solid {

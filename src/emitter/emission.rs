@@ -1,4 +1,4 @@
-//! Which particles an emitter lets out in a step, whatever moves them afterwards.
+//! The particles that an emitter emits in a step, whatever moves them afterwards.
 
 use core::f32::consts::TAU;
 
@@ -19,10 +19,10 @@ pub(crate) struct Birth {
     pub(crate) age: f32,
 }
 
-/// How far an emitter has come: what lies between one step and the next.
+/// An emitter's state between one step and the next.
 ///
-/// The k-th particle is born at the same time, with the same random numbers, however long the steps
-/// are. It knows nothing of what becomes of the particles.
+/// Emission is deterministic: the k-th particle is born at the same time, with the same random
+/// numbers, at any frame rate. It does not depend on what becomes of the particles.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct Emission {
     /// The part of a particle that the rate has already yielded, 0..1.
@@ -35,12 +35,12 @@ pub(crate) struct Emission {
 
 impl Emission {
     /// Calls `birth` for each particle of a step of `seconds` that ends with the emitter at `to`,
-    /// oldest first, those of a burst last. It is to be called in every frame, so that it knows the
-    /// emitter's way; nothing is born while no time passes.
+    /// oldest first, those of a burst last. It is to be called in every frame, to follow the
+    /// emitter's path; nothing is born while no time passes.
     ///
     /// Nothing is born where the transform is not finite or has no rotation, as with a scale of 0.
-    /// `emitter` is what [`ParticleEmitter::take`] gives. No more are born than its capacity: of
-    /// more, the last ones.
+    /// `emitter` comes from [`ParticleEmitter::take`]. If more would be born than its capacity,
+    /// only the last ones are.
     pub(crate) fn emit(
         &mut self,
         emitter: &ParticleEmitter,
@@ -119,7 +119,7 @@ impl Pose {
     }
 }
 
-/// What particles come out of, in the emitter's space.
+/// The opening that emits particles, in the emitter's space.
 struct Nozzle {
     /// Across the direction, across it again, and along it.
     axes: Mat3,
@@ -138,7 +138,7 @@ impl Nozzle {
         Self {
             axes: Mat3::from_cols(side, other, direction),
             radius: emitter.nozzle,
-            // As cos loses the small angles of jets.
+            // 1 − cos would lose the small angles of jets.
             opening: 2.0 * (0.5 * emitter.spread).sin().powi(2),
             speed: emitter.speed,
             jitter: emitter.jitter,
@@ -162,8 +162,8 @@ impl Nozzle {
     }
 }
 
-/// A direction evenly from the cap around +z, as high as this, of the unit sphere, by two numbers
-/// from 0 to 1.
+/// A direction distributed evenly over the cap of this height around +z of the unit sphere, from
+/// two numbers from 0 to 1.
 fn within_cap(height: f32, u: f32, v: f32) -> Vec3 {
     let down = height * u;
     // sin² = 1 − (1 − down)².

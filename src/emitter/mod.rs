@@ -1,7 +1,8 @@
 //! Emitters: particles that come out of a nozzle, fly, bounce and vanish.
 //!
-//! [`FluidSystems::Emit`] adds the births of a step to [`EmittedParticles`]; [`FluidSystems::Simulate`]
-//! moves all and hands them to the entity's [`FluidParticles`].
+//! [`FluidSystems::Emit`] adds the particles born in a step to [`EmittedParticles`];
+//! [`FluidSystems::Simulate`] moves all particles and writes them to the entity's
+//! [`FluidParticles`].
 
 mod check;
 mod colliders;
@@ -25,20 +26,20 @@ pub use self::{
 pub(crate) use self::emission::Emission;
 use crate::{particles::FluidParticles, range::SettingRange, schedule::FluidSystems};
 
-/// Lets particles out of its entity, which is a fluid of them.
+/// Emits particles from its entity, which is a fluid made of them.
 ///
-/// New particles come from where the entity is now, spread along its way since the last frame; those
-/// that are out stay in the world when it moves on. They fly freely, bounce off every
+/// New particles are born at the entity, spread along its path since the last frame; particles
+/// already emitted stay in the world when it moves on. Particles fly freely, bounce off every
 /// [`ParticleCollider`], and vanish by age, by [`bounds`](Self::bounds), or, the oldest first, when
-/// they are more than the [`capacity`](Self::capacity). It owns the positions and the radius of the
-/// [`FluidParticles`] beside it.
+/// there are more than the [`capacity`](Self::capacity). The emitter overwrites the positions and
+/// the radius of the [`FluidParticles`] on its entity.
 ///
-/// Equal steps give equal particles, bit for bit, on any number of threads. A step is never longer
-/// than 0.25 s. A stopped emitter without particles costs nothing. Values out of their range are said
-/// once in the log and taken as the nearest that is in range.
+/// Emission and motion are deterministic: equal steps give equal particles, bit for bit, on any
+/// number of threads. A step is never longer than 0.25 s. A stopped emitter without particles costs
+/// nothing. Values out of range are logged once and clamped.
 ///
-/// A step of 100,000 particles takes 1.0 ms in flight, 1.9 ms among four solids and 1.4 ms at rest, their
-/// shaping left out (medians of `cargo bench --bench emitter` on 2 cores).
+/// A step of 100,000 particles takes 1.0 ms in flight, 1.9 ms among four solids and 1.4 ms at rest,
+/// without shaping (medians of `cargo bench --bench emitter` on 2 cores).
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -55,65 +56,67 @@ use crate::{particles::FluidParticles, range::SettingRange, schedule::FluidSyste
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, EmittedParticles, Emission)]
 pub struct ParticleEmitter {
-    /// Whether particles come out. Default true. Those that are out fly on without it.
+    /// Whether new particles are emitted. Default true. Existing particles fly on when it is off.
     pub enabled: bool,
-    /// How many particles come out, evenly in time. Unit: 1/s, range 0..=10,000,000, default 1000.
+    /// Emission rate: particles per second, evenly in time. Unit: 1/s, range 0..=10,000,000,
+    /// default 1000.
     #[reflect(@SettingRange::new(0.0, 1e7).unit("1/s").logarithmic())]
     pub rate: f32,
-    /// How fast they come out. Unit: m/s, range 0..=1000, default 4, which rises 0.8 m.
+    /// Speed of emission. Unit: m/s, range 0..=1000, default 4, enough to rise 0.8 m.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub speed: f32,
-    /// Where they come out to, in the entity's space. Its length does not matter. Default: up, +y.
+    /// Direction of emission, in the entity's space. Its length does not matter. Default: up, +y.
     #[reflect(@SettingRange::new(-1.0, 1.0))]
     pub direction: Vec3,
-    /// Half the angle of the cone that they fill, evenly. Unit: rad, range 0..=π, default 0.05.
-    /// Higher: from a jet to a spray, a half-space (π/2) and all around (π).
+    /// Half angle of the cone of emission, which is filled evenly. Unit: rad, range 0..=π, default
+    /// 0.05. Higher: from a jet to a spray, a half-space (π/2) and all directions (π).
     #[reflect(@SettingRange::new(0.0, PI as f64).unit("rad"))]
     pub spread: f32,
-    /// Radius of the disc that they come from, across the direction, in the entity's space.
-    /// Unit: m, range 0..=1000, default 0.05. 0: a point.
+    /// Radius of the nozzle, a disc across the direction, in the entity's space. Unit: m, range
+    /// 0..=1000, default 0.05. 0: a point.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic())]
     pub nozzle: f32,
-    /// How unsteady they are: a random velocity in a ball of this radius is added to each. Unit: m/s,
-    /// range 0..=1000, default 0.1. Higher: the jet breaks up sooner.
+    /// Largest random velocity added to each particle, evenly from a ball of this radius. Unit:
+    /// m/s, range 0..=1000, default 0.1. Higher: the jet breaks up sooner.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub jitter: f32,
     /// Radius of every particle, in the entity's space: [`FluidParticles::radius`]. Unit: m, range
     /// 1e-6..=1e6, default 0.02.
     #[reflect(@SettingRange::new(1e-6, 1e6).unit("m").logarithmic())]
     pub particle_radius: f32,
-    /// Age at which they vanish. Unit: s, from 0, default 3. Infinite: never.
+    /// Age at which particles vanish. Unit: s, from 0, default 3. Infinite: never.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().open())]
     pub lifetime: f32,
-    /// What pulls at them, in the world. Unit: m/s², range −1000..=1000 each, default −9.81 along y.
+    /// Acceleration of the particles, in world space. Unit: m/s², range −1000..=1000 each, default
+    /// −9.81 along y.
     #[reflect(@SettingRange::new(-1e3, 1e3).unit("m/s²"))]
     pub gravity: Vec3,
-    /// Share of their velocity that the air takes. Unit: 1/s, range 0..=1000, default 0. Higher:
-    /// they slow down sooner, and fall at gravity / drag in the end.
+    /// Air drag: rate at which particles lose velocity. Unit: 1/s, range 0..=1000, default 0.
+    /// Higher: particles slow down sooner, and their terminal velocity, gravity / drag, is lower.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("1/s").logarithmic())]
     pub drag: f32,
-    /// Box in the entity's space beyond which they vanish. Default: none.
+    /// Box in the entity's space outside which particles vanish. Default: none.
     pub bounds: Option<EmitterBounds>,
-    /// How many there are at most; the oldest make room for new ones. Range 0..=10,000,000, default
-    /// 100,000.
+    /// Maximum number of particles; the oldest make room for new ones. Range 0..=10,000,000,
+    /// default 100,000.
     #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
     pub capacity: u32,
-    /// Other seeds, other particles. Default 0.
+    /// Seed of the random numbers: other seeds give other particles. Default 0.
     pub seed: u64,
-    /// Particles that come out at once in the next step; then it is 0 again. Default 0. See
+    /// Number of particles to emit at once in the next step, which resets it to 0. Default 0. See
     /// [`burst`](Self::burst).
     #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
     pub queued: u32,
 }
 
-/// A box, in the space of an emitter's entity.
+/// A box in the space of an emitter's entity.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct EmitterBounds {
     /// Its lower corner. Unit: m, default −10 each.
     #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
     pub min: Vec3,
-    /// Its upper corner, nowhere below the other. Unit: m, default 10 each.
+    /// Its upper corner, nowhere below `min`. Unit: m, default 10 each.
     #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
     pub max: Vec3,
 }
@@ -127,8 +130,9 @@ impl Default for EmitterBounds {
     }
 }
 
-/// Stands beside a [`ParticleEmitter`] whose particles something else moves: they do not come into
-/// being by [`FluidSystems::Emit`], and [`FluidSystems::Simulate`] leaves [`FluidParticles`] alone.
+/// Marks a [`ParticleEmitter`] whose particles something else moves: [`FluidSystems::Emit`] does
+/// not add them to [`EmittedParticles`], and [`FluidSystems::Simulate`] leaves [`FluidParticles`]
+/// alone.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component, Default, Clone)]
 pub struct ExternalMotion;
@@ -179,7 +183,7 @@ impl ParticleEmitter {
     };
 
     /// A narrow jet along the entity's forward direction (−z), as `Transform::looking_at` aims it:
-    /// so many particles per second, so fast (m/s).
+    /// `rate` particles per second at `speed` (m/s).
     pub const fn jet(rate: f32, speed: f32) -> Self {
         Self {
             rate,
@@ -191,7 +195,7 @@ impl ParticleEmitter {
         }
     }
 
-    /// A jet upwards that opens and falls back: so many particles per second, so fast (m/s).
+    /// A jet upwards that opens and falls back: `rate` particles per second at `speed` (m/s).
     pub const fn fountain(rate: f32, speed: f32) -> Self {
         Self {
             rate,
@@ -203,7 +207,7 @@ impl ParticleEmitter {
         }
     }
 
-    /// Drops that fall from a wide disc of some radius (m): so many per second.
+    /// Drops that fall from a disc of radius `nozzle` (m): `rate` drops per second.
     pub const fn shower(rate: f32, nozzle: f32) -> Self {
         Self {
             rate,
@@ -215,8 +219,8 @@ impl ParticleEmitter {
         }
     }
 
-    /// Nothing by itself: what [`burst`](Self::burst) lets out flies apart all around, at this speed
-    /// (m/s).
+    /// No steady emission: the particles of a [`burst`](Self::burst) fly apart in all directions,
+    /// at `speed` (m/s).
     pub const fn bursts(speed: f32) -> Self {
         Self {
             rate: 0.0,
@@ -227,24 +231,23 @@ impl ParticleEmitter {
         }
     }
 
-    /// Lets out this many particles at once in the next step, whether or not it is enabled. What is
-    /// asked for before then adds up.
+    /// Emits `count` particles at once in the next step, whether or not the emitter is enabled.
+    /// Counts requested before that step add up.
     pub fn burst(&mut self, count: u32) {
         self.queued = self.queued.saturating_add(count);
     }
 
-    /// Lets particles come out.
+    /// Starts emission.
     pub fn start(&mut self) {
         self.enabled = true;
     }
 
-    /// Lets no more come out.
+    /// Stops emission.
     pub fn stop(&mut self) {
         self.enabled = false;
     }
 
-    /// These settings within their ranges, to emit from in a step of `seconds`. If any time passes,
-    /// the queue is emptied.
+    /// The clamped settings for a step of `seconds`. If any time passes, the queue is emptied.
     pub(crate) fn take(emitter: &mut Mut<Self>, seconds: f64) -> Self {
         let taken = emitter.clamped();
         if emitter.queued > 0 && seconds > 0.0 {

@@ -1,7 +1,7 @@
-//! How a particle gets through a step.
+//! The motion of a particle during a step.
 //!
-//! What is met on the way is found along the chord of the flight, so that nothing tunnels; the moment
-//! of contact is then sought on the flight itself, so that a bounce has the right speed.
+//! Contacts are found along the chord of the flight, so that nothing tunnels; the time of contact
+//! is then solved on the flight itself, so that a bounce has the right speed.
 
 use bevy::math::Vec3A;
 
@@ -10,7 +10,7 @@ use super::{
     flight::{Flight, Forces},
 };
 
-/// How often a particle may bounce in a step; what is left of the step then is lost to it.
+/// The most bounces of a particle in a step; after them the rest of the step is dropped.
 const CONTACTS: usize = 4;
 /// Nearer than this is touching. Unit: particle radii.
 const TOUCH: f32 = 1e-3;
@@ -102,8 +102,8 @@ impl Step<'_> {
         is_held
     }
 
-    /// Pushes a particle out of what it is in at the end of the step: of what has been put over it,
-    /// or what rounding has left.
+    /// Pushes a particle out of solids that it is in at the end of the step: because one was put
+    /// over it, or by rounding.
     fn push_out(&self, position: &mut Vec3A, velocity: &mut Vec3A) {
         for _ in 0..2 {
             let mut is_pushed = false;
@@ -128,7 +128,7 @@ impl Step<'_> {
         }
     }
 
-    /// What f32 can tell apart here, and a small part of the radius. Unit: m.
+    /// The resolution of f32 here, and a small part of the radius. Unit: m.
     pub(super) fn tolerance(&self, point: Vec3A) -> f32 {
         TOUCH * self.radius + 4.0 * f32::EPSILON * point.abs().max_element()
     }

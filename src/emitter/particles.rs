@@ -1,4 +1,4 @@
-//! The particles of an emitter, and the systems that let them out and move them.
+//! The particles of an emitter, and the systems that emit and move them.
 
 use bevy::{
     math::{Affine3A, Vec3A},
@@ -26,40 +26,40 @@ const EVERYWHERE: EmitterBounds = EmitterBounds {
 /// The age of particles that are to vanish.
 const DEAD: f32 = f32::INFINITY;
 
-/// The particles that an emitter has let out, oldest first, in the world's space. Beside
-/// [`ExternalMotion`] there are none.
+/// The particles of an emitter, oldest first, in world space. With [`ExternalMotion`] there are
+/// none.
 #[derive(Component, Clone, Debug, Default)]
 pub struct EmittedParticles {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
-    /// Those born in this step are less than 0 old at its begin.
+    /// Negative at the beginning of a step for particles born within it.
     ages: Vec<f32>,
     /// The transform that [`FluidParticles`] has been written with.
     written: Option<Affine3A>,
 }
 
 impl EmittedParticles {
-    /// How many there are.
+    /// Number of particles.
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// Their places. Unit: m.
+    /// Positions. Unit: m.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
     }
 
-    /// Their velocities. Unit: m/s.
+    /// Velocities. Unit: m/s.
     pub fn velocities(&self) -> &[Vec3] {
         &self.velocities
     }
 
-    /// Their ages. Unit: s.
+    /// Ages. Unit: s.
     pub fn ages(&self) -> &[f32] {
         &self.ages
     }
@@ -134,7 +134,7 @@ impl EmittedParticles {
     }
 }
 
-/// What is done to a part of the particles, by one thread.
+/// The work on a part of the particles, by one thread.
 struct Chunk<'a> {
     step: &'a Step<'a>,
     lifetime: f32,
@@ -174,7 +174,7 @@ impl Chunk<'_> {
             }
             let here = self.local_from_world.transform_point3a(place);
             (*position, *velocity, *local) = (place.into(), speed.into(), here.into());
-            // Neither is what is not a number.
+            // NaN is never within.
             let is_within = (here.cmpge(min) & here.cmple(max)).all();
             if !is_within {
                 *age = DEAD;
@@ -185,7 +185,7 @@ impl Chunk<'_> {
     }
 }
 
-/// Lets particles out.
+/// Emits particles.
 pub(super) fn emit(
     mut emitters: Query<
         (

@@ -1,4 +1,4 @@
-//! Egui for as long as the window is open, where the program has none itself.
+//! An egui context while the window is open, if the program has none itself.
 
 use bevy::{
     camera::RenderTarget,
@@ -9,7 +9,7 @@ use bevy_egui::{EguiContext, EguiPreUpdateSet, PrimaryEguiContext, egui, render:
 
 use super::FluidInspector;
 
-/// Where the window is drawn, and what it remembers while it is closed: its place, its sections.
+/// Where the window is drawn, and its state while it is closed: its place, its sections.
 #[derive(Resource, Default)]
 struct OwnContext {
     camera: Option<Entity>,
@@ -26,7 +26,7 @@ pub(super) fn plugin(app: &mut App) {
     }
 }
 
-/// `bevy_egui` never takes back that a camera shows a context, and looks for it in vain.
+/// `bevy_egui` never unmarks a camera whose context is removed, and looks for the context in vain.
 fn forget_closed_views(
     views: Query<(Entity, &MainEntity), With<EguiCameraView>>,
     contexts: Extract<Query<(), With<EguiContext>>>,

@@ -14,18 +14,18 @@
 //!     .run();
 //! ```
 //!
-//! F1 opens and closes it. All of it can be used from the keyboard: Tab and Shift+Tab go from
-//! setting to setting, arrows move sliders, Space opens lists, typed digits replace a number.
+//! F1 opens and closes it. It works from the keyboard alone: Tab and Shift+Tab go from setting to
+//! setting, arrows move sliders, Space opens lists, typed digits replace a number.
 //!
-//! What is shown follows from reflection: names from the fields, explanations from their docs,
-//! sliders from [`SettingRange`](crate::SettingRange). Any component or resource that derives
-//! `Reflect` can join: see [`FluidInspector::show`]. The fields are drawn by a walker of its own, as
-//! no release of `bevy-inspector-egui` goes with what is used here, Bevy 0.19 and `bevy_egui` 0.42:
-//! 0.37 wants `bevy_egui` 0.40, and 0.38 Bevy 0.20. A closed window costs nothing: if the program
-//! has no [`EguiPlugin`] of its own, egui itself rests.
+//! Its content comes from reflection: names from the fields, explanations from their docs, sliders
+//! from [`SettingRange`](crate::SettingRange). Any component or resource that derives `Reflect` can
+//! be added: see [`FluidInspector::show`]. The inspector draws the fields itself, as no release of
+//! `bevy-inspector-egui` works with both Bevy 0.19 and `bevy_egui` 0.42: 0.37 needs `bevy_egui`
+//! 0.40, and 0.38 Bevy 0.20. A closed window costs nothing: if the program has no [`EguiPlugin`] of
+//! its own, egui does not run either.
 //!
-//! Let the camera keep still while the pointer is over the window with
-//! `run_if(not(inspector_wants_pointer))` on the system that moves it.
+//! To keep the camera still while the pointer is over the window, add
+//! `run_if(not(inspector_wants_pointer))` to the system that moves it.
 
 mod context;
 pub mod presets;
@@ -50,11 +50,11 @@ use crate::{
     rain::{RainShelter, RainStreaks},
 };
 
-/// Adds the inspector: see [`inspector`](crate::inspector). It brings what it needs and the program
-/// has not: [`EguiPlugin`] and [`FluidDiagnosticsPlugin`]; add it after them.
+/// Adds the inspector: see [`inspector`](crate::inspector). It adds [`EguiPlugin`] and
+/// [`FluidDiagnosticsPlugin`] if they are missing; otherwise add it after them.
 #[derive(Clone, Copy, Debug)]
 pub struct FluidInspectorPlugin {
-    /// Opens and closes the window. Default: F1.
+    /// The key that opens and closes the window. Default: F1.
     pub key: KeyCode,
     /// Whether the window is open at the start. Default: false.
     pub open: bool,
@@ -69,26 +69,26 @@ impl Default for FluidInspectorPlugin {
     }
 }
 
-/// The state of the window, to be read and set by the program.
+/// The state of the window, which the program may read and set.
 #[derive(Resource, Clone, Debug)]
 pub struct FluidInspector {
     /// Whether the window is open.
     pub open: bool,
-    /// Opens and closes it.
+    /// The key that opens and closes it.
     pub key: KeyCode,
-    /// The camera whose settings are shown; the first where it is none.
+    /// The camera whose settings are shown; the first if `None`.
     pub camera: Option<Entity>,
-    /// The fluid whose settings are shown; the first where it is none.
+    /// The fluid whose settings are shown; the first if `None`.
     pub fluid: Option<Entity>,
-    /// What else is shown, such as a shelter.
+    /// Another entity whose settings are shown, such as a shelter; the first if `None`.
     pub other: Option<Entity>,
     types: Vec<TypeId>,
 }
 
 impl FluidInspector {
-    /// Shows components, or a resource, of type `T` as well. It has to be registered
+    /// Also shows components, or a resource, of type `T`. The type must be registered
     /// ([`App::register_type`]) with `#[reflect(Component)]` or `#[reflect(Resource)]`, and with
-    /// `#[reflect(Default)]` if it is to be reset. Presets are [`ReflectPresets`].
+    /// `#[reflect(Default)]` to allow a reset. Presets come from [`ReflectPresets`].
     pub fn show<T: GetTypeRegistration + 'static>(&mut self) -> &mut Self {
         let id = TypeId::of::<T>();
         if !self.types.contains(&id) {
@@ -97,7 +97,7 @@ impl FluidInspector {
         self
     }
 
-    /// The types that are shown, in their order.
+    /// The types shown, in order.
     pub fn types(&self) -> &[TypeId] {
         &self.types
     }
@@ -165,13 +165,13 @@ fn toggle(mut inspector: ResMut<FluidInspector>, keys: Res<ButtonInput<KeyCode>>
     }
 }
 
-/// A run condition: the pointer is over the inspector or any other egui window, or drags a part of
-/// it. The camera should not follow it then. False without egui.
+/// A run condition: whether the pointer is over the inspector or any other egui window, or drags a
+/// part of it. The camera should not follow it then. False without egui.
 pub fn inspector_wants_pointer(input: Option<Res<EguiWantsInput>>) -> bool {
     input.is_some_and(|input| input.wants_any_pointer_input())
 }
 
-/// A run condition: keys go to the inspector or any other egui window. False without egui.
+/// A run condition: whether keys go to the inspector or any other egui window. False without egui.
 pub fn inspector_wants_keyboard(input: Option<Res<EguiWantsInput>>) -> bool {
     input.is_some_and(|input| input.wants_any_keyboard_input())
 }

@@ -10,7 +10,8 @@ use crate::{
     SurfaceKernel,
 };
 
-/// A setting with named values. Register [`ReflectPresets`] for it, and the inspector offers them:
+/// A setting with named values. The inspector offers them if [`ReflectPresets`] is registered for
+/// the type:
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -56,7 +57,7 @@ impl ReflectPresets {
         (self.values)()
     }
 
-    /// The presets of a value's type; none where there are none.
+    /// The presets of a value's type, if it has any.
     pub fn of(value: &dyn PartialReflect, registry: &TypeRegistry) -> Option<Self> {
         let id = value.get_represented_type_info()?.type_id();
         registry.get_type_data::<Self>(id).cloned()

@@ -1,4 +1,4 @@
-//! What the plan left out for the camera's fluids, and why.
+//! Work that the plan skipped for the camera's fluids, and why.
 
 use bevy::{prelude::*, reflect::TypeRegistry};
 use bevy_egui::egui::{CollapsingHeader, RichText, Ui};
@@ -12,7 +12,7 @@ use crate::{
     render::{BodyReport, PlanReports, Skipped},
 };
 
-/// A section; the answer is that of the last frames that were asked for.
+/// A section; it shows the report of the last frames for which one was requested.
 pub(super) fn show(
     ui: &mut Ui,
     world: &World,

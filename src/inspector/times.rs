@@ -38,13 +38,13 @@ const COLORS: [Color32; PASSES.len() + 1] = [
     Color32::from_rgb(160, 130, 240),
 ];
 
-/// The names and colours of what has rain in it.
+/// The names and colours of the passes with rain.
 const RAIN: [(&str, Color32); RAIN_PASSES.len()] = [
     ("rain: scene depth", Color32::from_rgb(120, 120, 200)),
     ("transparent, rain", Color32::from_rgb(190, 215, 240)),
 ];
 
-/// What one line of the plot and one row of the table are about.
+/// One line of the plot and one row of the table.
 struct Stage {
     name: String,
     color: Color32,
@@ -53,7 +53,7 @@ struct Stage {
 }
 
 impl Stage {
-    /// Those with rain only where it is drawn: nobody else asks for the transparent things.
+    /// Includes the passes with rain only where rain is drawn.
     fn all(store: &DiagnosticsStore, now: Instant) -> Vec<Self> {
         let shape = Self {
             name: "shape".into(),

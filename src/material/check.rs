@@ -1,4 +1,4 @@
-//! Materials that make no sense: what is said, and what is drawn.
+//! Invalid materials: validation, logging and clamping.
 
 use bevy::prelude::*;
 use thiserror::Error;
@@ -13,7 +13,7 @@ const REFRACTIVE_INDICES: [f32; 2] = [0.2, 5.0];
 const ROUGHNESSES: [f32; 2] = [0.03, 1.0];
 const SOFTNESSES: [f32; 2] = [0.0, 8.0];
 
-/// Why a material makes no sense.
+/// Why a material is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MaterialError {
@@ -38,7 +38,7 @@ impl FluidMaterial {
     /// Checks every field against its documented range.
     ///
     /// # Errors
-    /// The first field that is out of its range, by name and value.
+    /// Returns an error that names the first field out of range and its value.
     pub fn validate(&self) -> Result<(), MaterialError> {
         self.medium.validate()?;
         let softness = match self.thickness {
@@ -71,8 +71,7 @@ impl FluidMaterial {
         Ok(())
     }
 
-    /// The nearest material that makes sense: what is out of range is moved to its end, and
-    /// what is no number gives way to the default.
+    /// The nearest valid material: values out of range are clamped, NaN is replaced by the default.
     pub fn clamped(&self) -> Self {
         let within = |value: f32, [min, max]: [f32; 2], absent: f32| {
             if value.is_nan() {

@@ -1,4 +1,4 @@
-//! What a fluid is made of.
+//! Fluid materials: refractive index, medium, roughness and thickness.
 
 mod check;
 
@@ -9,51 +9,53 @@ pub(crate) use check::plugin;
 
 use crate::{medium::Medium, range::SettingRange};
 
-/// The optical properties of a fluid. Fluids of a view whose materials are equal form one body:
-/// they merge on screen, unless one of another material lies between them.
+/// The optical properties of a fluid.
 ///
-/// Values out of their range are said once in the log and drawn as the nearest that is in range.
+/// Fluids with equal materials in one view form one body: they merge on screen, unless a fluid of
+/// another material lies between them.
+///
+/// A value out of range is logged once and clamped for drawing.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct FluidMaterial {
-    /// Refractive index relative to air. Range 0.2..=5, default 1.333 (water).
-    /// Higher: rays bend more and more light is reflected; 1: neither, as in smoke and fire.
+    /// Refractive index relative to air. Range 0.2..=5, default 1.333 (water). Higher: rays bend
+    /// more and more light is reflected. 1: no refraction or reflection, as in smoke and fire.
     #[reflect(@SettingRange::new(0.2, 5.0))]
     pub refractive_index: f32,
-    /// What is inside. Default: that of [`FluidMaterial::WATER`], which lets seven tenths of the red
-    /// through a metre.
+    /// The medium inside the fluid. Default: that of [`FluidMaterial::WATER`], which transmits
+    /// seven tenths of the red light over a metre.
     pub medium: Medium,
-    /// Perceptual roughness of the surface for the highlights of lights. Range 0.03..=1,
+    /// Perceptual roughness of the surface, for the specular highlights of lights. Range 0.03..=1,
     /// default 0.1. Higher: wider, dimmer highlights. Refractions stay sharp.
     #[reflect(@SettingRange::new(0.03, 1.0))]
     pub perceptual_roughness: f32,
-    /// How the length of a ray's way through a fluid of refractive index 1 is found. Others
-    /// ignore it. Default: [`Thickness::Layers`].
+    /// How a ray's path length through a fluid of refractive index 1 is measured. Fluids of other
+    /// indices ignore it. Default: [`Thickness::Layers`].
     pub thickness: Thickness,
 }
 
-/// How the length of a ray's way through a fluid of refractive index 1 is found.
+/// How a ray's path length through a fluid of refractive index 1 is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Thickness {
-    /// From the front of the nearest particle to the back of the farthest: a body without gaps.
-    /// Cheap, and smooth with its surface; but gaps between puffs count as full.
+    /// From the front of the nearest particle to the back of the farthest, as if the body had no
+    /// gaps. Cheap, and as smooth as the surface, but gaps between puffs count as filled.
     #[default]
     Layers,
-    /// The sum over all particles of the way through each, in one more pass over all of them.
-    /// Every particle counts as the volume that it fills at rest, (2r)³, however its splat is
-    /// shaped, so nothing pops where the particles disperse.
+    /// The sum of the path lengths through all particles, which takes one more pass over them.
+    /// Every particle counts as the volume it fills at rest, (2r)³, whatever the shape of its
+    /// splat, so nothing pops where particles disperse.
     Accumulated {
-        /// How far a particle thins out towards its rim: its density is `(1 − q²)^softness` over
-        /// the distance q from its centre, relative to the splat. Range 0..=8, default 1.
-        /// Higher: softer puffs; 0: even balls with a sharp rim.
+        /// How much a particle thins out towards its rim: its density is `(1 − q²)^softness`, where
+        /// q is the distance from its centre relative to the splat. Range 0..=8, default 1. Higher:
+        /// softer puffs. 0: uniform balls with a sharp rim.
         #[reflect(@SettingRange::new(0.0, 8.0))]
         softness: f32,
     },
 }
 
 impl Thickness {
-    /// Accumulated, with soft rims.
+    /// [`Thickness::Accumulated`] with soft rims.
     pub const SOFT: Self = Self::Accumulated { softness: 1.0 };
 }
 
@@ -87,7 +89,7 @@ impl FluidMaterial {
         ..Self::WATER
     };
 
-    /// Milk: a few millimetres hide what is behind.
+    /// Milk: a few millimetres hide the background.
     pub const MILK: Self = Self {
         refractive_index: 1.35,
         medium: Medium {
@@ -109,7 +111,7 @@ impl FluidMaterial {
         ..Self::WATER
     };
 
-    /// Grey smoke: half a metre hides nine tenths.
+    /// Grey smoke: half a metre hides nine tenths of the background.
     pub const SMOKE: Self = Self {
         refractive_index: 1.0,
         medium: Medium {
@@ -123,7 +125,8 @@ impl FluidMaterial {
         ..Self::WATER
     };
 
-    /// Fire: 0.2 m of it are some times as bright as what is shown white, and nearly clear.
+    /// Fire: nearly transparent, with emission several times as bright as display white
+    /// over 0.2 m.
     pub const FIRE: Self = Self {
         refractive_index: 1.0,
         medium: Medium {

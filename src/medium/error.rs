@@ -1,19 +1,19 @@
-//! Media that make no sense, and the nearest ones that do.
+//! Invalid media: validation and clamping.
 
 use bevy::prelude::*;
 use thiserror::Error;
 
 use super::Medium;
 
-/// Densities (1/m) and emissions (cd/m² per metre) beyond this are taken as this: squares and
-/// products with lengths stay finite.
+/// Largest density (1/m) and emission (cd/m² per metre); larger values are clamped, so that squares
+/// and products with lengths stay finite.
 const LIMIT: f32 = 1e12;
 
-/// Why a medium makes no sense.
+/// Why a medium is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MediumError {
-    /// A density is not one.
+    /// A density is out of range.
     #[error("`{field}` is {value}; it must be from 0 to {LIMIT:e} (1/m)")]
     Density {
         /// Name of the field.
@@ -47,7 +47,7 @@ impl Medium {
     /// Checks every field against its documented range.
     ///
     /// # Errors
-    /// The first field that is out of its range, by name and value.
+    /// Returns an error that names the first field out of range and its value.
     pub fn validate(&self) -> Result<(), MediumError> {
         for (field, value) in [
             ("scattering_density", self.scattering_density),
@@ -76,8 +76,7 @@ impl Medium {
         }
     }
 
-    /// The nearest medium that makes sense: what is out of range is moved to its end, and what
-    /// is no number counts as not there.
+    /// The nearest valid medium: values out of range are clamped, NaN counts as absent.
     pub fn clamped(&self) -> Self {
         let density = |value: f32| within(value, 0.0, LIMIT);
         let color = |color: LinearRgba, absent, limit| {

@@ -1,4 +1,4 @@
-//! What is inside a fluid: how light fades on its way through, and what joins it.
+//! The medium inside a fluid: absorption, scattering and emission of light.
 
 mod error;
 #[cfg(test)]
@@ -12,50 +12,50 @@ pub use error::MediumError;
 
 use crate::range::SettingRange;
 
-/// Extinction (1/m) beyond which nothing differs. GPUs take powers of 2, and f32's largest numbers
-/// times log₂ e are infinite, which over no distance is not a number.
+/// Largest extinction (1/m), far beyond any visible difference. GPUs compute exp with powers of 2:
+/// f32's largest numbers times log₂ e are infinite, and infinity times a distance of 0 is NaN.
 const DENSEST: f32 = 1e30;
 
-/// A homogeneous, evenly lit medium that scatters light, absorbs it and shines itself.
+/// A homogeneous, evenly lit medium that scatters, absorbs and emits light.
 ///
-/// Per channel, with `B = α_D + α_A (1 − C_A)`, a path of `d` metres leaves the fraction
-/// `f_T = exp(-B d)` of the light that comes from behind and adds
-/// `f_R = (C_D α_D L + C_E) (1 − exp(-B d)) / B`: the volume article's closed form, where `L` is
-/// the light that the medium stands in. Stretches in a row compose in order, so cutting a path
-/// anywhere changes nothing.
+/// Per channel, with the extinction `B = α_D + α_A (1 − C_A)`, a path of `d` metres transmits the
+/// fraction `f_T = exp(-B d)` of the light from behind and adds the in-scattered and emitted light
+/// `f_R = (C_D α_D L + C_E) (1 − exp(-B d)) / B`. This is the volume article's closed form; `L` is
+/// the surrounding light. Consecutive segments compose in order, so cutting a path anywhere changes
+/// nothing.
 ///
-/// The article assumes that the same light reaches every place inside. `L` is therefore the mean
-/// over all directions of what falls on the scene: directional lights (a quarter of their
-/// illuminance over π), the camera's [`EnvironmentMapLight`] and the ambient light. No place
-/// inside shades another, and point and spot lights do not count.
+/// The article assumes that the same light reaches every point inside. `L` is therefore the mean
+/// over all directions of the light that falls on the scene: directional lights (a quarter of their
+/// illuminance over π), the camera's [`EnvironmentMapLight`] and the ambient light. The medium does
+/// not shadow itself, and point and spot lights are ignored.
 ///
 /// Media are mixed with `+`.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct Medium {
-    /// How densely the medium is filled with matter that scatters light evenly to all sides
-    /// (`α_D`). Unit: 1/m, range 0.., default 0. Higher: more like milk.
+    /// Density of the matter that scatters light evenly in all directions (`α_D`). Unit: 1/m, range
+    /// 0.., default 0. Higher: more like milk.
     #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
     pub scattering_density: f32,
     /// The colour of the scattering matter in white light (`C_D`), linear, each channel 0..=1,
-    /// default white. What it does not scatter it absorbs.
+    /// default white. Light that is not scattered is absorbed.
     pub scattering_color: LinearRgba,
-    /// How densely the medium is filled with absorbing matter (`α_A`). Unit: 1/m, range 0..,
-    /// default 0. Higher: light fades over a shorter way.
+    /// Density of the absorbing matter (`α_A`). Unit: 1/m, range 0.., default 0. Higher: light
+    /// fades over a shorter distance.
     #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
     pub absorption_density: f32,
-    /// The colour that the absorbing matter lets pass (`C_A`), linear, each channel 0..=1, default
+    /// The colour that the absorbing matter transmits (`C_A`), linear, each channel 0..=1, default
     /// white (nothing is absorbed).
     pub absorption_color: LinearRgba,
-    /// What the medium itself sends (`C_E`). Unit: cd/m² per metre of depth, each channel 0..,
-    /// default black. Higher: brighter; with Bevy's default exposure white begins at some
-    /// 1000 cd/m².
+    /// Emission: light emitted by the medium itself (`C_E`). Unit: cd/m² per metre of depth, each
+    /// channel 0.., default black. Higher: brighter; with Bevy's default exposure, white begins at
+    /// about 1000 cd/m².
     #[reflect(@SettingRange::new(0.0, 1e5).unit("cd/m³").logarithmic().open())]
     pub emission: LinearRgba,
 }
 
 impl Medium {
-    /// Lets all light through and sends none.
+    /// A medium that neither scatters, absorbs nor emits light.
     pub const CLEAR: Self = Self {
         scattering_density: 0.0,
         scattering_color: LinearRgba::WHITE,
@@ -64,15 +64,15 @@ impl Medium {
         emission: LinearRgba::BLACK,
     };
 
-    /// [`Medium::CLEAR`].
+    /// Returns [`Medium::CLEAR`].
     pub const fn clear() -> Self {
         Self::CLEAR
     }
 
-    /// The medium that leaves `color` of white light after `distance` metres.
+    /// The absorbing medium that turns white light into `color` after `distance` metres.
     ///
-    /// Channels are clamped to 0.001..=1, so that no channel asks for an infinite density;
-    /// a distance that is not positive gives [`Medium::CLEAR`].
+    /// Channels are clamped to 0.001..=1, so that no density is infinite; a distance that is not
+    /// positive gives [`Medium::CLEAR`].
     pub fn absorbing(color: impl Into<LinearRgba>, distance: f32) -> Self {
         if !is_length(distance) {
             return Self::CLEAR;
@@ -91,8 +91,8 @@ impl Medium {
         }
     }
 
-    /// The medium that looks like `color` in white light where it is deep, and hides half of
-    /// what is behind it after `distance` metres.
+    /// The scattering medium that has `color` in white light where it is deep, and hides half of
+    /// the background after `distance` metres.
     ///
     /// A distance that is not positive gives [`Medium::CLEAR`].
     pub fn scattering(color: impl Into<LinearRgba>, distance: f32) -> Self {
@@ -106,8 +106,8 @@ impl Medium {
         }
     }
 
-    /// The medium that hides nothing and sends `luminance` (cd/m², per channel) to the eye from
-    /// a depth of `distance` metres.
+    /// The emitting medium that hides nothing and adds `luminance` (cd/m², per channel) over a
+    /// depth of `distance` metres.
     ///
     /// A distance that is not positive gives [`Medium::CLEAR`].
     pub fn emitting(luminance: impl Into<LinearRgba>, distance: f32) -> Self {
@@ -120,8 +120,7 @@ impl Medium {
         }
     }
 
-    /// Extinction `B` per channel. Unit: 1/m. Values that make no sense count as the nearest
-    /// that do.
+    /// Extinction `B` per channel. Unit: 1/m. Values out of range are clamped.
     pub fn extinction(&self) -> Vec3 {
         let it = self.clamped();
         let extinction = it.scattering_density
@@ -129,27 +128,28 @@ impl Medium {
         extinction.min(Vec3::splat(DENSEST))
     }
 
-    /// What a metre of depth sends to the eye, before any of it is lost: `C_D α_D L + C_E` per
-    /// channel. `light` is the mean luminance L (cd/m²) of what the medium is lit by.
+    /// In-scattered light and emission per metre of depth, before extinction: `C_D α_D L + C_E` per
+    /// channel. `light` is the mean luminance L (cd/m²) of the surrounding light.
     pub fn source(&self, light: Vec3) -> Vec3 {
         let it = self.clamped();
         it.scattered() * light + it.emission.to_vec3()
     }
 
-    /// The fraction of light per channel that is left after `distance` metres: `f_T`.
+    /// The fraction of light per channel that is transmitted over `distance` metres: `f_T`.
     pub fn transmitted(&self, distance: f32) -> Vec3 {
         let distance = finite(distance);
         self.extinction().map(|b| (-b * distance).exp())
     }
 
-    /// What `distance` metres send to the eye in even `light` (cd/m², per channel): `f_R`.
+    /// In-scattered light and emission of `distance` metres in even `light` (cd/m², per channel):
+    /// `f_R`.
     pub fn reflected(&self, distance: f32, light: Vec3) -> Vec3 {
         let distance = finite(distance);
         let lengths = self.extinction().map(|b| seen_length(b, distance));
         (self.source(light) * lengths).min(Vec3::MAX)
     }
 
-    /// How much is scattered to the eye per metre, in units of the light: `C_D α_D`.
+    /// In-scattered light per metre, in units of the surrounding light: `C_D α_D`.
     pub(crate) fn scattered(&self) -> Vec3 {
         self.scattering_density * self.scattering_color.to_vec3()
     }
@@ -161,7 +161,7 @@ impl Default for Medium {
     }
 }
 
-/// Both media in the same place, each as dense as alone.
+/// Both media in the same place, each with its own density.
 impl Add for Medium {
     type Output = Self;
 
@@ -184,17 +184,17 @@ impl Add for Medium {
     }
 }
 
-/// Two kinds of matter: as much of each colour as there is matter of it.
+/// Mixes two kinds of matter; their colours are weighted by density.
 fn mixed([a, b]: [f32; 2], [of_a, of_b]: [LinearRgba; 2]) -> (f32, LinearRgba) {
     let share = if b > 0.0 { b / (a + b) } else { 0.0 };
     (a + b, opaque(of_a.to_vec3().lerp(of_b.to_vec3(), share)))
 }
 
-/// The length of a path that sends as much as `distance` does where `extinction` takes from it:
+/// The length of a path without extinction that adds as much light as `distance` does with it:
 /// `(1 − exp(-x)) / B` with `x = B d`. Its twin is `seen_length` in `medium.wgsl`.
 ///
-/// As printed it is 0/0 without extinction and loses digits near it; below x = 0.5 the series
-/// `d Σ (-x)^k / (k + 1)!` stands in.
+/// As printed, the formula is 0/0 without extinction and loses digits near it; below x = 0.5 the
+/// series `d Σ (-x)^k / (k + 1)!` is used instead.
 fn seen_length(extinction: f32, distance: f32) -> f32 {
     let x = extinction * distance;
     if x >= 0.5 {
@@ -209,7 +209,7 @@ fn is_length(distance: f32) -> bool {
     distance.is_finite() && distance > 0.0
 }
 
-/// Because 0 · ∞ is not a number; what is none itself counts as 0.
+/// A finite length, because 0 · ∞ is NaN; NaN itself counts as 0.
 fn finite(distance: f32) -> f32 {
     if distance > 0.0 {
         distance.min(f32::MAX)

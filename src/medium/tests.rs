@@ -14,7 +14,7 @@ fn relative(got: f32, wanted: f64) -> f64 {
     (f64::from(got) - wanted).abs() / wanted.abs().max(floor)
 }
 
-/// A medium of this extinction that sends 1 a metre.
+/// A medium of this extinction that emits 1 per metre.
 fn glowing(extinction: f32) -> Medium {
     Medium {
         absorption_density: extinction,

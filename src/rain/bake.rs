@@ -1,4 +1,4 @@
-//! Keeps the textures of streaks as the settings want them, without holding up a frame.
+//! Bakes the textures of streaks for the current settings, without holding up a frame.
 
 use std::{
     sync::{
@@ -26,16 +26,16 @@ use super::{
     streaks::{HEIGHT, MIP_LEVELS, STEPS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
 
-/// How much of the textures is drawn, 0 to 1.
+/// Progress of drawing the textures, 0 to 1.
 pub const BAKE_PROGRESS: DiagnosticPath = DiagnosticPath::const_new("rain/bake_progress");
-/// How long it took to draw all textures. Unit: ms.
+/// Time taken to draw all textures. Unit: ms.
 pub const BAKE_TIME: DiagnosticPath = DiagnosticPath::const_new("rain/bake_time");
 
-/// Whether apps wait for the textures.
+/// Whether the app waits for the textures.
 #[derive(Resource, Clone, Copy)]
 pub(crate) struct SynchronousBake(pub(crate) bool);
 
-/// The textures of streaks that are there, and those that are being drawn.
+/// The current textures of streaks and those being drawn.
 #[derive(Resource, Default)]
 pub struct BakedStreaks {
     ready: Option<ReadyStreaks>,
@@ -52,7 +52,7 @@ pub(crate) struct ReadyStreaks {
     /// See [`Streaks`].
     pub(crate) scale: f32,
     pub(crate) extinction: [f64; DENSITIES],
-    /// At which the drops of the textures fall together. Unit: m/s.
+    /// Common speed at which the drops of the textures fall. Unit: m/s.
     pub(crate) speed: f64,
 }
 
@@ -64,12 +64,12 @@ struct RunningBake {
 }
 
 impl BakedStreaks {
-    /// Whether textures are there and no others are being drawn.
+    /// Whether textures are ready and no others are being drawn.
     pub fn is_settled(&self) -> bool {
         self.ready.is_some() && self.running.is_none()
     }
 
-    /// The exposure of the textures that are there. Unit: s.
+    /// The exposure of the current textures. Unit: s.
     pub fn exposure(&self) -> Option<f32> {
         Some(self.ready.as_ref()?.input.exposure)
     }
@@ -88,7 +88,7 @@ pub(crate) fn bake_streaks(
     mut images: ResMut<Assets<Image>>,
     mut diagnostics: Diagnostics,
 ) {
-    // Whoever has no rain has no textures; while it does not rain, they are left as they are.
+    // Without rain there are no textures; while the rate is 0, they are left as they are.
     if rains.is_empty() {
         streaks.ready = None;
     }
@@ -96,7 +96,7 @@ pub(crate) fn bake_streaks(
     if !is_raining && streaks.running.is_none() {
         return;
     }
-    // A frame that takes longer than that says nothing of the next one.
+    // A longer frame does not predict the length of the next one.
     let delta = time.delta_secs().min(LONGEST_FRAME);
     if delta > 0.0 {
         let frame = streaks.frame.unwrap_or(delta);
@@ -183,7 +183,7 @@ fn image(texels: Vec<u8>) -> Image {
         address_mode_v: ImageAddressMode::Repeat,
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
-        // A level's voxels are all about as far away: one mip level does, for half the cost.
+        // A level's voxels are all about as far away: one mip level is enough, for half the cost.
         mipmap_filter: ImageFilterMode::Nearest,
         ..default()
     });

@@ -1,17 +1,17 @@
-//! Which drops there are at one rate of rain and at another.
+//! The drops present at each rain rate.
 //!
-//! As rain grows denser, drops come and none goes: Marshall and Palmer's density of every diameter
-//! rises with the rate. So a drop may be told by how many there were when it came. It is the same
-//! drop, as large and as fast, at every rate at which it is there, and the drops of a rate are those
-//! that came first.
+//! As rain grows denser, drops are added and none is removed: Marshall and Palmer's density of
+//! every diameter rises with the rate. A drop is therefore identified by the number of drops before
+//! it. It has the same size and speed at every rate at which it is present, and the drops of a rate
+//! are those added first.
 
 use super::drops::{INTERCEPT, SMALLEST};
 
-/// Λ at which there are so many drops a m³ of [`SMALLEST`] and more: the inverse of
+/// Λ at which there are `drops` drops per m³ of [`SMALLEST`] and larger: the inverse of
 /// [`count`](super::drops::count). Unit: 1/mm. Its twin is `slope_of_count` in `births.wgsl`.
 ///
-/// With y = Λ · [`SMALLEST`], y eʸ = N₀ · [`SMALLEST`] / `drops`: Lambert's function, here Winitzki's
-/// estimate (2003, within 2 %) and a step of Newton's.
+/// With y = Λ · [`SMALLEST`], y eʸ = N₀ · [`SMALLEST`] / `drops`: Lambert's function, here by
+/// Winitzki's estimate (2003, within 2 %) and one Newton step.
 pub(crate) fn slope_of_count(drops: f64) -> f64 {
     let wanted = INTERCEPT * SMALLEST / drops.max(1e-3);
     let log = wanted.ln_1p();
@@ -20,11 +20,12 @@ pub(crate) fn slope_of_count(drops: f64) -> f64 {
     (guess - (guess * growth - wanted) / (growth * (guess + 1.0))) / SMALLEST
 }
 
-/// The diameter of the drop that comes when there are `drops` a m³ already; `random` are numbers in
-/// 0..1. Unit: mm, from [`SMALLEST`] on. Its twin is `diameter_of_birth` in `births.wgsl`.
+/// The diameter of the drop that is added when there are `drops` per m³ already; `random` holds
+/// numbers in 0..1. Unit: mm, from [`SMALLEST`] on. Its twin is `diameter_of_birth` in
+/// `births.wgsl`.
 ///
-/// What comes as Λ falls has the density −∂n/∂Λ = N₀ D e^(−ΛD). Above [`SMALLEST`] that is a mixture
-/// of an exponential and the sum of two.
+/// Drops added as Λ falls have the density −∂n/∂Λ = N₀ D e^(−ΛD). Above [`SMALLEST`] that is a
+/// mixture of an exponential and the sum of two.
 pub(crate) fn diameter_of_birth(drops: f64, random: [f64; 3]) -> f64 {
     let slope = slope_of_count(drops);
     let longer = |random: f64| -random.max(1e-9).ln() / slope;
@@ -57,7 +58,7 @@ mod tests {
         assert!(slope_of_count(0.0).is_finite());
     }
 
-    /// Of the drops that have come by then, as many are of each size as the integral says.
+    /// The drops added so far have the size distribution of the integral.
     #[test]
     fn drops_that_have_come_are_marshall_and_palmers() {
         let mut random = Random::new(7);
@@ -74,7 +75,7 @@ mod tests {
                 let more = diameters.iter().filter(|&&d| d > edge).count();
                 let share = more as f64 / f64::from(samples);
                 let expected = count(rate, edge, f64::INFINITY) / all;
-                // Four standard deviations of the share, and what Newton's step leaves.
+                // Four standard deviations of the share, and the error of Newton's step.
                 let slack = 4.0 * (expected / f64::from(samples)).sqrt() + 1e-3 * expected;
                 assert!(
                     (share - expected).abs() < slack,

@@ -1,4 +1,4 @@
-//! Rain that makes no sense: what is said, and what is drawn.
+//! Invalid rain: validation, logging and clamping.
 
 use bevy::prelude::*;
 use thiserror::Error;
@@ -12,11 +12,11 @@ use crate::{
     limits::Limited,
 };
 
-/// Why rain makes no sense.
+/// Why rain settings are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RainError {
-    /// A field is out of its range.
+    /// A field is out of range.
     #[error("`{owner}::{field}` is {value}; it must be from {min} to {max}")]
     Range {
         /// `Rain` or `RainStreaks`.
@@ -30,12 +30,12 @@ pub enum RainError {
         /// Largest value allowed.
         max: f32,
     },
-    /// A shelter takes no place.
+    /// A shelter's box is invalid.
     #[error("`RainShelter::half_size` is {half_size} at a scale of {scale}: there is no such box")]
     Shelter {
         /// Half of its sides in the entity's space.
         half_size: Vec3,
-        /// That of its `GlobalTransform`.
+        /// The scale of its `GlobalTransform`.
         scale: Vec3,
     },
 }
@@ -68,7 +68,7 @@ impl Rain {
     fn fields(&mut self) -> [Limited<'_>; 6] {
         let absent = Self::RAIN;
         [
-            // No rain, rather than some.
+            // NaN means no rain.
             Limited::new("rate", &mut self.rate, [0.0, 200.0], 0.0),
             Limited::new(
                 "distance",
@@ -91,7 +91,7 @@ impl Rain {
     /// Checks every field against its documented range.
     ///
     /// # Errors
-    /// The first field that is out of its range, by name and value.
+    /// Returns an error that names the first field out of range and its value.
     pub fn validate(&self) -> Result<(), RainError> {
         let mut rain = *self;
         rain.fields()
@@ -99,8 +99,8 @@ impl Rain {
             .try_for_each(|field| RainError::check("Rain", field))
     }
 
-    /// The nearest settings that make sense: what is out of range is moved to its end; a rate that is
-    /// no number is none, anything else gives way to the default.
+    /// The nearest valid settings: values out of range are clamped, a NaN rate becomes 0, and any
+    /// other NaN is replaced by the default.
     pub fn clamped(&self) -> Self {
         let mut clamped = *self;
         clamped.fields().iter_mut().for_each(Limited::clamp);
@@ -121,7 +121,7 @@ impl RainStreaks {
     /// Checks the exposure time against its documented range.
     ///
     /// # Errors
-    /// If it is out of it, by value.
+    /// Returns an error that names the exposure time's value if it is out of range.
     pub fn validate(&self) -> Result<(), RainError> {
         match self.exposure {
             Exposure::FrameTime => Ok(()),
@@ -133,10 +133,10 @@ impl RainStreaks {
 }
 
 impl RainShelter {
-    /// Checks that the box, placed so, is somewhere. It may be as flat as a sheet.
+    /// Checks that the box and its transform are valid. The box may be as flat as a sheet.
     ///
     /// # Errors
-    /// If its size is no number, or its transform cannot be undone.
+    /// Returns an error if the size is not finite or the transform is not invertible.
     pub fn validate(&self, transform: &GlobalTransform) -> Result<(), RainError> {
         let determinant = transform.affine().matrix3.determinant();
         if self.half_size.is_finite() && determinant.is_finite() && determinant.abs() > 1e-12 {
@@ -149,7 +149,7 @@ impl RainShelter {
     }
 }
 
-/// The exposure time nearest to `seconds` that makes sense.
+/// The valid exposure time nearest to `seconds`.
 pub(crate) fn clamped_exposure(mut seconds: f32) -> f32 {
     limited_exposure(&mut seconds).clamp();
     seconds
@@ -235,7 +235,7 @@ mod tests {
         assert_eq!((clamped.distance, clamped.extent), (1.0, 500.0));
         assert_eq!(clamped.wind, vec2(0.0, 30.0));
         assert_eq!(clamped.brightness, 0.0);
-        // One after the other is named, until none is left.
+        // The invalid fields are named one after the other, until none is left.
         let mut named = Vec::new();
         while let Err(error) = odd.validate() {
             let name = error.field();

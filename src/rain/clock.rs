@@ -7,31 +7,32 @@ use bevy::{
 
 use super::{bake::BakedStreaks, settings::Rain};
 
-/// Where a camera moves this far up or down, the height is changed about which columns lean.
-/// Unit: m.
+/// When a camera moves this far up or down, the height about which columns lean changes. Unit: m.
 const REACH: f64 = 32.0;
 
-/// After so long drops one by one begin anew, so that 32-bit floats can follow them. Unit: s.
+/// After this time, individually drawn drops restart, so that 32-bit floats stay precise. Unit: s.
 const PERIOD: f64 = 256.0;
 
-/// The state of a camera's rain. It moves with `Time`, and so that neither a jump of the camera nor a
-/// change of settings makes drops jump at the camera's height. Where the wind changes, columns lean
-/// otherwise: the farther above or below the camera, the farther they swing.
+/// The state of a camera's rain, advanced by `Time`.
+///
+/// Neither a jump of the camera nor a change of settings makes drops jump at the camera's height.
+/// When the wind changes, so does the lean of columns: the farther above or below the camera, the
+/// farther they swing.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainClock {
     /// How far the drops of the textures have fallen. Unit: m.
     pub(crate) fallen: f64,
-    /// For how long drops one by one have fallen, and how far the air has gone in that time.
+    /// How long individually drawn drops have fallen, and how far the air has moved in that time.
     /// Unit: s, m.
     pub(crate) seconds: f64,
     pub(crate) drift: DVec2,
-    /// How far drops of mean speed go sideways (x, z) while they fall a metre.
+    /// How far drops of mean speed move sideways (x, z) while they fall a metre.
     pub(crate) lean: Vec2,
-    /// Where columns of drops stand at `height`, on top of their places in the lattice. Unit: m.
+    /// Offset of the columns of drops at `height` from their places in the lattice. Unit: m.
     pub(crate) anchor: DVec2,
     /// Unit: m.
     pub(crate) height: f64,
-    /// Before, there is no lean to change.
+    /// Whether `lean` has been set.
     pub(crate) has_begun: bool,
 }
 
@@ -76,13 +77,13 @@ pub(crate) fn advance_clocks(
 mod tests {
     use super::*;
 
-    /// Where a column stands at some height.
+    /// Place of a column at some height.
     fn place(clock: &RainClock, height: f64) -> DVec2 {
         clock.anchor - clock.lean.as_dvec2() * (height - clock.height)
     }
 
-    /// Where a drop of some speed is that began at the origin: in its column, which stands still at
-    /// any height, and off it (see `drops.wgsl`).
+    /// Place of a drop of some speed that began at the origin: the place of its column, which is
+    /// fixed at any height, plus its offset (see `drops.wgsl`).
     fn drop_place(clock: &RainClock, speed: f64, mean: f64) -> DVec2 {
         place(clock, -speed * clock.seconds) + clock.drift * (1.0 - speed / mean)
     }
@@ -96,7 +97,7 @@ mod tests {
         assert!((clock.fallen - 5.0).abs() < 1e-9);
     }
 
-    /// However fast a drop falls, the wind takes it along as fast as itself.
+    /// The wind carries every drop at the wind's speed, however fast the drop falls.
     #[test]
     fn drops_drift_with_the_wind() {
         let (wind, mean) = (vec2(3.0, -1.0), 5.0);
@@ -130,7 +131,7 @@ mod tests {
         }
     }
 
-    /// Cameras that began together stand among the same columns.
+    /// Cameras that began together are among the same columns.
     #[test]
     fn a_cameras_height_places_no_column() {
         let [low, high] = [2.0, 900.0].map(|height| {

@@ -1,27 +1,26 @@
-//! The densities of drops that the textures of streaks hold, and how rain of any rate is mixed from
-//! them.
+//! The drop densities held by the textures of streaks, and how they are mixed for any rain rate.
 
 use bevy::prelude::*;
 
-/// How many densities of drops a texture holds, one in each channel.
+/// Number of drop densities in a texture, one in each channel.
 pub const DENSITIES: usize = 4;
-/// The rain rates whose drops in one metre of depth are those densities. Unit: mm/h. Voxels are two
-/// metres deep and more: the first is drizzle in those, the last heavy rain in 4 m.
+/// The rain rates whose drops in one metre of depth give those densities. Unit: mm/h. Voxels are at
+/// least two metres deep: the first rate is drizzle in those, the last heavy rain in 4 m.
 pub const BAKED_RATES: [f64; DENSITIES] = [2.0, 10.0, 50.0, 200.0];
 
-/// How much of each of the baked densities makes up an optical depth of `wanted`, given what each
-/// of them has. Densities are nested: the drops of one are also in the next.
+/// Weights of the baked densities that add up to an optical depth of `wanted`; `baked` holds the
+/// optical depth of each. Densities are nested: the drops of one are also in the next.
 ///
-/// Between two of them the additional drops fade in, and those that are there already are a little
-/// stronger for it, so that the squares of all opacities add up as those of `wanted` drops of full
-/// opacity would: pixels then vary over time as they should. Below the first and above the last
-/// density all drops fade.
+/// Between two densities, the additional drops fade in and the others are slightly stronger to
+/// compensate, so that the squares of all opacities add up like those of `wanted` drops of full
+/// opacity: the variance of pixels over time is then correct. Below the first and above the last
+/// density, the opacity of all drops is scaled.
 pub fn density_weights(wanted: f64, baked: [f64; DENSITIES]) -> Vec4 {
     let mut weights = Vec4::ZERO;
     let mut below: Option<usize> = None;
     for (i, &has) in baked.iter().enumerate() {
         let less = below.map_or(0.0, |j| baked[j]);
-        // A density that holds no more drops than the one before cannot be told from it.
+        // A density with no more drops than the one before adds nothing.
         if has <= less {
             continue;
         }
@@ -43,7 +42,7 @@ pub fn density_weights(wanted: f64, baked: [f64; DENSITIES]) -> Vec4 {
     weights
 }
 
-/// The opacities x of the drops of `less` and y of those that `more` has besides, for which both
+/// The opacities x of the drops of `less` and y of those that `more` adds, for which both
 /// less·x + (more − less)·y and less·x² + (more − less)·y² are `wanted`.
 fn between(wanted: f64, less: f64, more: f64) -> (f64, f64) {
     let besides = more - less;
@@ -61,7 +60,7 @@ mod tests {
 
     const BAKED: [f64; DENSITIES] = [1.0, 3.0, 4.0, 10.0];
 
-    /// Of each of the nested drops, and how much of them there is.
+    /// Opacity and amount of each nested set of drops.
     fn opacities(weights: Vec4) -> [(f64, f64); DENSITIES] {
         let mut less = 0.0;
         core::array::from_fn(|i| {
@@ -86,7 +85,7 @@ mod tests {
                 "{weights}"
             );
         }
-        // At a baked density it alone is seen.
+        // At a baked density, only that density is visible.
         assert!((density_weights(3.0, BAKED) - vec4(0.0, 1.0, 0.0, 0.0)).length() < 1e-6);
     }
 
@@ -99,7 +98,7 @@ mod tests {
                 .map(|(o, amount)| o * o * amount)
                 .sum();
             assert!((squares / wanted - 1.0).abs() < 1e-5, "{wanted}: {squares}");
-            // No drop stands out.
+            // No drop is conspicuous.
             assert!(
                 opacities(weights).iter().all(|(o, _)| *o < 1.45),
                 "{weights}"
@@ -112,7 +111,7 @@ mod tests {
         let mut before = density_weights(0.0, BAKED);
         for step in 1..=12_000 {
             let weights = density_weights(f64::from(step) * 1e-3, BAKED);
-            // The spread sets in like a root.
+            // The spread starts like a square root.
             assert!(
                 (weights - before).length() < 0.1,
                 "{step}: {before}, {weights}"

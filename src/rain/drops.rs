@@ -1,38 +1,38 @@
-//! The physics of falling drops: how many there are, how fast they fall, how much light they take.
+//! The physics of falling drops: size distribution, terminal velocity and extinction.
 //!
-//! Diameters are in millimetres and rain rates in mm/h, as the literature has them; everything
-//! else is in metres and seconds.
+//! Diameters are in millimetres and rain rates in mm/h, as in the literature; everything else is in
+//! metres and seconds.
 
 use bevy::prelude::*;
 
 /// N₀ of Marshall and Palmer (1948). Unit: drops per m³ and mm of diameter.
 pub const INTERCEPT: f64 = 8000.0;
-/// Drops smaller than this are not drawn. They take less than 1 % of the light that all drops
-/// take, at 1 mm/h and above. Unit: mm.
+/// Drops smaller than this are not drawn. They cause less than 1 % of the extinction of all drops,
+/// at 1 mm/h and above. Unit: mm.
 pub const SMALLEST: f64 = 0.1;
 /// Drops larger than this break up. Unit: mm.
 pub const LARGEST: f64 = 6.0;
 
 const GRAVITY: f64 = 9.806_65;
-/// At 20 °C and 1013 hPa, as Gunn and Kinzer's measurements. Units: kg/m³, kg/m³, Pa·s.
+/// At 20 °C and 1013 hPa, as in Gunn and Kinzer's measurements. Units: kg/m³, kg/m³, Pa·s.
 const WATER_DENSITY: f64 = 998.2;
 const AIR_DENSITY: f64 = 1.204;
 const AIR_VISCOSITY: f64 = 1.82e-5;
 
-/// How a drop's terminal speed follows from its size.
+/// How a drop's terminal velocity follows from its size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum DragLaw {
     /// The measurements of Gunn and Kinzer (1949).
     #[default]
     GunnKinzer,
-    /// The drag of a rigid sphere, as the rain paper has it (Yoshida et al., equations 2 to 4).
-    /// Drops above 2 mm come out too fast, for they flatten: by up to 40 % at 6 mm.
+    /// The drag of a rigid sphere, as in the rain paper (Yoshida et al., equations 2 to 4). Drops
+    /// above 2 mm fall too fast, by up to 40 % at 6 mm, because real drops flatten.
     RigidSphere,
 }
 
 impl DragLaw {
-    /// Terminal speed of a drop. Units: mm, m/s. Sizes that make no sense do not fall.
+    /// Terminal velocity of a drop. Units: mm, m/s. Invalid sizes return 0.
     pub fn speed(self, diameter: f64) -> f64 {
         if !(diameter > 0.0 && diameter.is_finite()) {
             return 0.0;
@@ -112,23 +112,24 @@ pub fn drag_coefficient(reynolds: f64) -> f64 {
     }
 }
 
-/// What the iteration for a rigid sphere came to.
+/// Result of the iteration for a rigid sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidSpeed {
-    /// m/s.
+    /// Terminal velocity. Unit: m/s.
     pub speed: f64,
-    /// How many times the drag was evaluated.
+    /// Number of evaluations of the drag.
     pub steps: u32,
-    /// Relative change of the last step.
+    /// Relative change in the last step.
     pub change: f64,
 }
 
-/// The iteration ends here at the latest.
+/// Maximum number of steps of the iteration.
 pub const MAX_STEPS: u32 = 30;
 
-/// Terminal speed of a rigid sphere: speed → Reynolds number → drag → speed, until it stands
-/// still. The two pieces of the drag do not meet at a Reynolds number of 1: where the iteration
-/// jumps to and fro between them, the jump is closed in by halving.
+/// Terminal velocity of a rigid sphere: speed → Reynolds number → drag → speed, until it converges.
+///
+/// The two pieces of the drag do not meet at a Reynolds number of 1: where the iteration jumps to
+/// and fro between them, the jump is narrowed down by halving.
 pub fn rigid_speed(diameter: f64) -> RigidSpeed {
     let fall =
         4.0 * GRAVITY * diameter * 1e-3 * (WATER_DENSITY - AIR_DENSITY) / (3.0 * AIR_DENSITY);
@@ -182,12 +183,12 @@ pub fn count(rate: f64, low: f64, high: f64) -> f64 {
     }
 }
 
-/// β: the fraction of light lost a metre to drops with diameters from `low` to `high`, which may be
-/// infinite: ∫ n π D²/4 dD. Units: mm/h, mm, 1/m.
+/// β, the extinction by drops with diameters from `low` to `high`, which may be infinite: the
+/// fraction of light lost per metre, ∫ n π D²/4 dD. Units: mm/h, mm, 1/m.
 ///
-/// A drop takes the light that meets its cross section, whatever the exposure time.
+/// A drop removes the light that meets its cross section, whatever the exposure time.
 pub fn extinction_between(rate: f64, low: f64, high: f64) -> f64 {
-    // Also for what is not a number.
+    // Also for NaN.
     if rate.is_nan() || rate <= 0.0 {
         return 0.0;
     }
@@ -205,7 +206,7 @@ pub fn extinction_between(rate: f64, low: f64, high: f64) -> f64 {
     1e-6 * core::f64::consts::FRAC_PI_4 * INTERCEPT / slope.powi(3) * (above(low) - above(high))
 }
 
-/// β of all drops. Units: mm/h, 1/m.
+/// β, the extinction by all drops. Units: mm/h, 1/m.
 pub fn extinction(rate: f64) -> f64 {
     extinction_between(rate, 0.0, f64::INFINITY)
 }
@@ -213,7 +214,7 @@ pub fn extinction(rate: f64) -> f64 {
 /// The rate at which [`mean_speed`] is taken; between rates it differs by a few per cent.
 const TYPICAL_RATE: f64 = 10.0;
 
-/// The mean speed of drops, weighted by the light they take. Unit: m/s.
+/// The mean terminal velocity of drops, weighted by their extinction. Unit: m/s.
 pub fn mean_speed(law: DragLaw) -> f64 {
     let steps = 256;
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -230,7 +231,7 @@ pub fn mean_speed(law: DragLaw) -> f64 {
 mod tests {
     use super::*;
 
-    /// What Gunn and Kinzer measured, as it is cited elsewhere.
+    /// Gunn and Kinzer's measurements, as cited elsewhere.
     const CITED: [(f64, f64); 10] = [
         (0.1, 0.27),
         (0.2, 0.72),
@@ -255,8 +256,8 @@ mod tests {
         }
     }
 
-    /// A slip in one entry would stand out from what its neighbours say. Up to 0.2 mm the law
-    /// bends too much for that.
+    /// A slip in one entry would break the interpolation between its neighbours. Up to 0.2 mm the
+    /// law bends too much for that.
     #[test]
     fn every_entry_lies_between_its_neighbours() {
         for window in GUNN_KINZER.windows(3).skip(1) {
@@ -270,8 +271,8 @@ mod tests {
         }
     }
 
-    /// The fit of Atlas, Srivastava and Sekhon (1973) to the same measurements, good to 2 % where
-    /// they say it holds.
+    /// The fit of Atlas, Srivastava and Sekhon (1973) to the same measurements, good to 2 % within
+    /// its stated range.
     #[test]
     fn the_table_agrees_with_the_published_fit() {
         for step in 0..=44 {
@@ -292,7 +293,7 @@ mod tests {
             let rigid = rigid_speed(diameter);
             assert!(rigid.steps <= MAX_STEPS);
             assert!(rigid.change.abs() < 1e-4, "{diameter} mm: {rigid:?}");
-            // It is a fixed point, or it stands at the jump of the drag.
+            // It is a fixed point, or it is at the jump of the drag.
             let re = reynolds(diameter, rigid.speed);
             let weight = GRAVITY * (WATER_DENSITY - AIR_DENSITY) * diameter * 1e-3 * 4.0 / 3.0;
             let drag = AIR_DENSITY * rigid.speed.powi(2) * drag_coefficient(re);
@@ -363,7 +364,7 @@ mod tests {
         assert!((extinction(100.0) / 3.3e-3 - 1.0).abs() < 0.01);
     }
 
-    /// Drops that are not drawn take next to nothing.
+    /// Drops that are not drawn cause almost no extinction.
     #[test]
     fn drawn_drops_take_all_the_light() {
         for rate in [1.0, 10.0, 100.0] {
@@ -372,7 +373,7 @@ mod tests {
         }
     }
 
-    /// Of the light that is taken half is taken by drops above 1.06 mm at 10 mm/h (Λ D = 2.67).
+    /// Half of the extinction is by drops above 1.06 mm at 10 mm/h (Λ D = 2.67).
     #[test]
     fn the_mean_speed_is_that_of_a_middling_drop() {
         for law in [DragLaw::GunnKinzer, DragLaw::RigidSphere] {

@@ -1,8 +1,8 @@
 //! Rain: falling drops as streaks of light, for a camera with [`Rain`].
 //!
 //! After Yoshida, Dobashi and Yamamoto, *A fast rendering method of rain streaks for rainy
-//! landscapes*: the streaks of all drops in a cubic metre of air are drawn into textures ahead
-//! ([`streaks`]); voxels around the camera show them on billboards that face it. The game's lights
+//! landscapes*: the streaks of all drops in a cubic metre of air are drawn into textures in advance
+//! ([`streaks`]); voxels around the camera show them on billboards that face it. The scene's lights
 //! light them.
 //!
 //! ```no_run
@@ -17,22 +17,24 @@
 //!     .run();
 //! ```
 //!
-//! # What is ours
+//! # Differences from the paper
 //!
-//! - A streak's length follows the exposure time, its opacity keeps the light a drop takes
-//!   ([`drops::extinction`]) whatever the exposure.
-//! - Within 2 m drops are drawn one by one, each at its own place and speed: there streaks are told
-//!   apart. That is both truer and cheaper than many layers of small voxels.
-//! - A column of falling billboards is one standing billboard whose texture falls: all drops in one
-//!   draw of one layer. Beyond 2 m, drops of all sizes so fall at one speed, the mean.
-//! - Drops come as rain grows denser, and stay what they are: no change of the rate moves one.
+//! - A streak's length follows the exposure time; its opacity keeps the extinction by a drop
+//!   ([`drops::extinction`]) the same at any exposure.
+//! - Within 2 m, where streaks can be distinguished, drops are drawn individually, each at its own
+//!   place and speed. That is both more accurate and cheaper than many layers of small voxels.
+//! - A column of falling billboards is replaced by one fixed billboard whose texture falls: all
+//!   drops in one draw of one layer. Beyond 2 m, drops of all sizes therefore fall at one speed,
+//!   the mean.
+//! - As rain grows denser, drops are added and the others stay as they are: no change of the rate
+//!   moves a drop.
 //! - Voxels are two metres wide, and from 6 m on twice as wide each time the distance doubles: the
 //!   cost grows with the logarithm of the distance.
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
-//!   depth, are mixed from one texel, and pixels vary over time as they should.
+//!   depth, are mixed from one texel with the correct variance of pixels over time.
 //!
-//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs. Rain beyond the
-//! streaks is lit by what is all around alone.
+//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs. Rain beyond
+//! the streaks is lit only by the surroundings: ambient light, and environment map or sky box.
 
 mod bake;
 pub(crate) mod births;
@@ -59,11 +61,11 @@ pub use self::{
     settings::{Exposure, Rain, RainMethod, RainShelter, RainStreaks},
 };
 
-/// Draws rain for cameras with [`Rain`]. It stands beside `FluidPlugin` and needs nothing of it.
+/// Draws rain for cameras with [`Rain`]; independent of `FluidPlugin`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RainPlugin {
-    /// Whether the app waits for the textures of streaks instead of having them drawn in the
-    /// background: for pictures and tests, where every frame counts. Default false.
+    /// Whether the app waits for the textures of streaks instead of drawing them in the background:
+    /// for pictures and tests, where every frame counts. Default false.
     pub synchronous_bake: bool,
 }
 

@@ -1,24 +1,25 @@
-//! Where drops send light: the phase function of a sphere of water in geometric optics.
+//! The phase function of raindrops: a sphere of water in geometric optics.
 //!
-//! A fit to rays traced through the sphere with Fresnel's factors (the tests trace them): a lobe of
-//! light refracted ahead, a bow of light reflected inside once, and an even rest. Diffraction is
-//! left out: it stays within a thousandth of a degree and cannot be told from light that passed by.
+//! A fit to rays traced through the sphere with Fresnel reflectance (the tests trace them): a
+//! forward lobe of refracted light, a rainbow of light reflected once inside, and an even rest.
+//! Diffraction is left out: it stays within a thousandth of a degree and cannot be distinguished
+//! from light that missed the drop.
 
 use core::f32::consts::PI;
 
-/// Share of the light that goes ahead, as exp(`AHEAD_SHARPNESS` · (cos θ − 1)).
+/// Share of the light in the forward lobe, exp(`AHEAD_SHARPNESS` · (cos θ − 1)).
 pub const AHEAD: f32 = 0.93;
-/// Higher: a narrower lobe.
+/// Sharpness of the forward lobe. Higher: a narrower lobe.
 pub const AHEAD_SHARPNESS: f32 = 7.4;
-/// Share of the light in the bow.
+/// Share of the light in the rainbow.
 pub const BOW: f32 = 0.045;
-/// Cosine of the bow's scattering angle, and its half width in the cosine.
+/// Cosine of the rainbow's scattering angle.
 pub const BOW_COSINE: f32 = -0.79;
-/// See [`BOW_COSINE`].
+/// Half width of the rainbow, in the cosine of the scattering angle.
 pub const BOW_WIDTH: f32 = 0.12;
 
-/// Share of the light scattered per steradian at an angle with this cosine; 1 is straight ahead.
-/// Unit: 1/sr. Its twin is `phase` in `common.wgsl`.
+/// The phase function: share of the light scattered per steradian at an angle with this cosine; 1
+/// is straight ahead. Unit: 1/sr. Its twin is `phase` in `common.wgsl`.
 pub fn phase(cosine: f32) -> f32 {
     let even = (1.0 - AHEAD - BOW) / (4.0 * PI);
     let ahead = AHEAD * AHEAD_SHARPNESS / (2.0 * PI) * (AHEAD_SHARPNESS * (cosine - 1.0)).exp();
@@ -33,8 +34,8 @@ mod tests {
 
     const BINS: usize = 40;
 
-    /// Rays evenly spread over the sphere's cross section, binned by the cosine of their deflection.
-    /// Unit: 1/sr.
+    /// Rays evenly spread over the sphere's cross section, binned by the cosine of their
+    /// deflection. Unit: 1/sr.
     fn traced() -> [f64; BINS] {
         let (rays, index) = (20_000, 1.333_f64);
         let mut bins = [0.0; BINS];
@@ -100,7 +101,7 @@ mod tests {
             let ratio = fitted(bin) / traced;
             assert!((0.75..1.6).contains(&ratio), "bin {bin}: {ratio}");
         }
-        // The bow is narrower than a bin: its light together.
+        // The rainbow is narrower than a bin: its light is compared as a whole.
         let bow = |f: &dyn Fn(usize) -> f64| (0..12).map(f).sum::<f64>();
         let ratio = bow(&fitted) / bow(&|bin| traced[bin]);
         assert!((ratio - 1.0).abs() < 0.1, "{ratio}");

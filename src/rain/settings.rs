@@ -1,33 +1,34 @@
-//! What a user sets.
+//! Rain settings.
 
 use bevy::{camera::Hdr, prelude::*};
 
 use super::{check::clamped_exposure, clock::RainClock, drops::DragLaw};
 use crate::range::SettingRange;
 
-/// Makes a camera see rain. Values that make no sense are named in the log
-/// once, and clamped.
+/// Makes a camera draw rain.
 ///
-/// Cameras with equal settings that began together see the same drops, until the wind changes.
+/// Values out of range are logged once and clamped.
 ///
-/// The scene's directional lights (the four brightest that share a render layer with the camera),
-/// point and spot lights (the 32 brightest at the camera) light it, and what is all around: the
-/// ambient light, and the camera's environment map or sky box.
+/// Cameras with equal settings that began together show the same drops, until the wind changes.
+///
+/// Rain is lit by the scene's directional lights (the four brightest that share a render layer with
+/// the camera), by point and spot lights (the 32 brightest at the camera), and by the surroundings:
+/// the ambient light, and the camera's environment map or sky box.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Hdr, RainClock)]
 pub struct Rain {
-    /// How much it rains. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame;
-    /// at 0 nothing is done. Drops keep their sizes and speeds as others join them.
+    /// Rain rate. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame; at 0 no
+    /// work is done. Drops keep their sizes and speeds as others are added.
     #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic())]
     pub rate: f32,
-    /// How far from the camera streaks are drawn; beyond it the background fades. Unit: m, range
-    /// 1..=100, default 5 as in the rain paper. Higher: depth and motion in far lamplight; the cost
-    /// grows with its logarithm beyond 2 m. Straight up or down, streaks are points: from 8 m on they
-    /// fade like what is beyond the distance.
+    /// Distance from the camera up to which streaks are drawn; beyond it the background fades.
+    /// Unit: m, range 1..=100, default 5 as in the rain paper. Higher: depth and motion in far
+    /// lamplight; the cost grows with the logarithm of the distance beyond 2 m. Straight up or
+    /// down, streaks are points: from 8 m on they fade like rain beyond the distance.
     #[reflect(@SettingRange::new(1.0, 100.0).unit("m").logarithmic())]
     pub distance: f32,
-    /// How far it rains: the background fades over the way from [`distance`](Self::distance) to
+    /// Distance up to which it rains: the background fades from [`distance`](Self::distance) to
     /// here. Unit: m, range 0..=100,000, default 500.
     #[reflect(@SettingRange::new(0.0, 1e5).unit("m").logarithmic())]
     pub extent: f32,
@@ -35,8 +36,8 @@ pub struct Rain {
     /// default 0.
     #[reflect(@SettingRange::new(-30.0, 30.0).unit("m/s"))]
     pub wind: Vec2,
-    /// How bright drops are. Range 0..=100, default 1, which is what water scatters. Higher:
-    /// streaks that show on a display of small range.
+    /// Brightness of drops. Range 0..=100, default 1, the light that real drops scatter. Higher:
+    /// streaks that are visible on a display of small dynamic range.
     #[reflect(@SettingRange::new(0.0, 100.0).logarithmic())]
     pub brightness: f32,
     /// How rain is drawn. Default [`RainMethod::Streaks`].
@@ -53,7 +54,7 @@ impl Rain {
     /// 75 mm/h.
     pub const CLOUDBURST: Self = Self::falling(75.0);
 
-    /// Rain of some rate (mm/h), the rest as by default.
+    /// Rain of the given rate (mm/h), with defaults for the rest.
     pub const fn falling(rate: f32) -> Self {
         Self {
             rate,
@@ -79,21 +80,20 @@ pub enum RainMethod {
     /// Textures of streaks on billboards, one for each voxel of air (Yoshida et al.).
     #[default]
     Streaks,
-    /// Every drop by itself: the truth that the other is measured against. Slow: millions of
-    /// drops within 10 m.
+    /// Every drop drawn individually: the reference for the other method. Slow: millions of drops
+    /// within 10 m.
     PerDrop,
 }
 
-/// What the textures of streaks are made from. They are drawn anew, in the background, when this
-/// changes.
+/// Inputs of the textures of streaks. The textures are redrawn in the background when this changes.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
 pub struct RainStreaks {
-    /// How long the shutter is open: streaks are as long as drops fall in this time.
+    /// Exposure time: streaks are as long as the distance that drops fall in it.
     pub exposure: Exposure,
     /// How fast drops fall. Default [`DragLaw::GunnKinzer`].
     pub law: DragLaw,
-    /// Other seeds, other drops. Any number, default 0.
+    /// Random seed: different seeds give different drops. Any number, default 0.
     pub seed: u64,
 }
 
@@ -101,26 +101,26 @@ pub struct RainStreaks {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Exposure {
-    /// As long as the app's frames take, smoothed and within 1/240..=1/30 s, so that one frame's
-    /// streak goes on where the last one's ends. Textures are drawn anew when it has changed by
-    /// more than a quarter.
+    /// The frame time of the app, smoothed and within 1/240..=1/30 s, so that one frame's streak
+    /// continues where the last one's ends. Textures are redrawn when it has changed by more than a
+    /// quarter.
     #[default]
     FrameTime,
-    /// Unit: s, range 1/10,000..=1/10.
+    /// A fixed time. Unit: s, range 1/10,000..=1/10.
     Seconds(
         #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().start(1.0 / 60.0))] f32,
     ),
 }
 
-/// Before frames have taken any time. Unit: s.
+/// Exposure before the frame time is known. Unit: s.
 pub(crate) const DEFAULT_EXPOSURE: f32 = 1.0 / 60.0;
 
-/// Exposures that follow the frames' length are of this at most. Unit: s.
+/// Longest exposure that follows the frame time. Unit: s.
 pub(crate) const LONGEST_FRAME: f32 = 1.0 / 30.0;
 
 impl Exposure {
-    /// The exposure to draw with when frames take `frame` seconds (if that is known) and textures
-    /// of `current` are there (if any are).
+    /// The exposure to draw with, for frames of `frame` seconds (if known) and current textures of
+    /// the exposure `current` (if any).
     pub(crate) fn seconds(self, frame: Option<f32>, current: Option<f32>) -> f32 {
         match self {
             Self::Seconds(seconds) => clamped_exposure(seconds),
@@ -136,8 +136,9 @@ impl Exposure {
     }
 }
 
-/// A box that keeps rain off: inside it and below it, as seen along the fall of the drops, it is
-/// dry. The entity's `GlobalTransform` places it; of all shelters the eight nearest to a camera
+/// A box that keeps rain off: it is dry inside and below it, along the fall of the drops.
+///
+/// The entity's `GlobalTransform` places the box; only the eight shelters nearest to a camera
 /// count.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]

@@ -1,14 +1,14 @@
-//! Textures of the streaks that drops in a cubic metre draw while the shutter is open.
+//! Textures of the streaks that the drops in a cubic metre of air leave during an exposure.
 //!
-//! Seen from the side in parallel projection. One layer per variant; the four channels of a layer are
-//! four densities of drops, each holding the drops of the one before it and more. Layers tile: what
-//! leaves one on one side enters on the other, and streaks across a border are the same in all
-//! variants, so that any two may stand beside or on another.
+//! Streaks are seen from the side in parallel projection. There is one layer per variant; its four
+//! channels are four densities of drops, each of which includes the drops of the one before it.
+//! Layers tile: a streak that leaves one on one side enters on the other, and streaks across a
+//! border are the same in all variants, so that any two may be adjacent on any side.
 //!
-//! A drop of diameter D that falls at v covers a point of its way for D/v on average times π/4 for
-//! its roundness, of an exposure T: opacity π/4 · D/(vT), over a width of D and a length of vT. That
-//! is an area of π/4 · D², the drop's cross section, whatever the exposure; it is spread over the
-//! texels exactly.
+//! A drop of diameter D and speed v covers a point on its path for an average time of D/v, times
+//! π/4 for its roundness, out of an exposure T. Its streak has an opacity of π/4 · D/(vT) over a
+//! width of D and a length of vT: an area of π/4 · D², the drop's cross section, at any exposure.
+//! It is spread over the texels exactly.
 
 use core::{
     array,
@@ -30,26 +30,26 @@ use crate::random::Random;
 pub const VARIANTS: usize = 8;
 /// Texels along a metre across the fall. A power of two.
 pub const WIDTH: usize = 512;
-/// Texels along a metre of fall. A power of two. With fewer, mip levels for pixels that are as wide
-/// as they are high would blur streaks along the fall, and pixels vary too little.
+/// Texels along a metre of fall. A power of two. With fewer, mip levels for square pixels would
+/// blur streaks along the fall, and pixels would vary too little.
 pub const HEIGHT: usize = 512;
-/// Unit: s. Longer ones would have streaks leave their cube.
+/// Longest exposure: with a longer one, streaks would leave their cube. Unit: s.
 pub const LONGEST_EXPOSURE: f32 = 0.1;
-/// Unit: s.
+/// Shortest exposure. Unit: s.
 pub const SHORTEST_EXPOSURE: f32 = 1e-4;
 
-/// What streaks look like depends on these alone.
+/// Everything that the appearance of streaks depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreakInput {
-    /// How long the shutter is open. Unit: s.
+    /// Exposure time. Unit: s.
     pub exposure: f32,
     /// How fast drops fall.
     pub law: DragLaw,
-    /// Other seeds, other drops.
+    /// Random seed: different seeds give different drops.
     pub seed: u64,
 }
 
-/// The textures, and what is needed to read them.
+/// The textures and the values needed to read them.
 #[derive(Clone, Debug)]
 pub struct Streaks {
     /// Unorm texels of four channels: layer by layer, each with all its mip levels, rows from the
@@ -61,7 +61,7 @@ pub struct Streaks {
     pub extinction: [f64; DENSITIES],
 }
 
-/// How many mip levels a layer has.
+/// Number of mip levels of a layer.
 pub const MIP_LEVELS: u32 = WIDTH.ilog2() + 1;
 
 /// The size of a mip level.
@@ -81,7 +81,7 @@ type Texel = [f32; DENSITIES];
 struct Streak {
     /// Across the fall. Unit: m, 0..1.
     x: f64,
-    /// Where the drop is when the shutter closes, from the bottom. Unit: m, 0..1.
+    /// Height of the drop when the shutter closes. Unit: m, 0..1.
     y: f64,
     /// m.
     length: f64,
@@ -99,11 +99,10 @@ impl Streak {
     }
 }
 
-/// How many times [`bake`] counts.
+/// Number of steps that [`bake`] counts.
 pub const STEPS: u32 = 2 * VARIANTS as u32;
 
-/// Draws all textures, in parallel; `done` counts to [`STEPS`]. An exposure that makes no sense is
-/// clamped.
+/// Draws all textures in parallel; `done` counts up to [`STEPS`]. An invalid exposure is clamped.
 pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
     let variants = sample_streaks(input);
     let mut extinction = [0.0; DENSITIES];
@@ -120,7 +119,7 @@ pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
             layer
         })
         .collect();
-    // Rain denser than the densest is seldom: most of the range is for what is there.
+    // Denser rain than the densest is rare: the range is that of the values present.
     let scale = layers
         .iter()
         .flatten()
@@ -142,8 +141,8 @@ pub fn bake(input: &StreakInput, done: &AtomicU32) -> Streaks {
     }
 }
 
-/// The drops of each variant: a random number of them in each, as many in all together as there are
-/// on average.
+/// The drops of each variant: a random number in each, with the average number in all of them
+/// together.
 fn sample_streaks(input: &StreakInput) -> [Vec<Streak>; VARIANTS] {
     let exposure = f64::from(clamped_exposure(input.exposure));
     let mut random = Random::new(input.seed);
@@ -238,7 +237,8 @@ fn halved(layer: &[Texel], (width, height): (usize, usize)) -> Vec<Texel> {
     out
 }
 
-/// To 8 bits; what is rounded off one texel is added to the next, so that the mean is kept.
+/// Quantises to 8 bits; the rounding error of one texel is added to the next, so that the mean is
+/// kept.
 fn quantise(layer: &[Texel], scale: f32, out: &mut Vec<u8>) {
     let factor = if scale > 0.0 { 255.0 / scale } else { 0.0 };
     let mut left = Texel::default();

@@ -1,4 +1,4 @@
-//! A recording: which files, and when each is shown.
+//! A recording: its files, and the time of each.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use super::{error::RecordingError, files, frame::is_radius, pattern::FramePatter
 /// Three days at 60 frames a second are more than anybody records.
 const MOST_FRAMES: u32 = 1 << 24;
 
-/// What a recording is made of; also the content of a `.fluid.ron` file beside the frames:
+/// The settings of a recording; also the content of a `.fluid.ron` file beside the frames:
 ///
 /// ```ron
 /// (frames: "dam_####.vtk", rate: 30.0, radius: 0.025)
@@ -22,20 +22,20 @@ const MOST_FRAMES: u32 = 1 << 24;
 #[serde(default, deny_unknown_fields)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct RecordingSettings {
-    /// Names of the frames' files, see [`FramePattern`]. In a `.fluid.ron` relative to that file;
-    /// else an asset's path, with its source if it is not the default
+    /// Names of the frames' files, see [`FramePattern`]. In a `.fluid.ron`, relative to that file;
+    /// otherwise an asset path, with its source if it is not the default
     /// (`embedded://game/dam_####.vtk`). Absolute paths are read from the file system.
     pub frames: String,
     /// Frames per second of recorded time. Range > 0, default 30.
     pub rate: f64,
-    /// Radius of the particles where the files do not hold it. Unit: m, > 0. Default: none.
+    /// Radius of the particles if the files have none. Unit: m, > 0. Default: none.
     pub radius: Option<f32>,
-    /// The first number that is played. Default: the lowest that there is.
+    /// The first number to play. Default: the lowest found.
     pub first: Option<u32>,
-    /// The last number that is played. Default: the highest that there is.
+    /// The last number to play. Default: the highest found.
     ///
-    /// With both `first` and `last` the folder is not listed: where it cannot be, as on the web,
-    /// give both. Frames that are then missing are reported and skipped.
+    /// With both `first` and `last` the folder is not listed: set both where it cannot be, as on
+    /// the web. Missing frames are then logged and skipped.
     pub last: Option<u32>,
 }
 
@@ -60,14 +60,14 @@ impl From<&str> for RecordingSettings {
     }
 }
 
-/// A numbered sequence of particle files, or one of them. Only names and times: the frames are
-/// loaded while a [`RecordingPlayer`](super::RecordingPlayer) plays them.
+/// A numbered sequence of particle files, or a single file. It holds only names and times: the
+/// frames are loaded while a [`RecordingPlayer`](super::RecordingPlayer) plays them.
 ///
-/// The frame with the number n is shown at (n − first) / rate. Numbers that are left out take their
-/// time all the same: the frame before is held, or the gap is interpolated across.
+/// Frame number n is shown at (n − first) / rate. Missing numbers keep their time: the previous
+/// frame is held, or the gap is interpolated.
 #[derive(Asset, TypePath, Clone, Debug, PartialEq)]
 pub struct FluidRecording {
-    /// Shared with the players, which know by it whether it is still the same.
+    /// Shared with the players, which compare it to detect another recording.
     pub(super) frames: Arc<[RecordedFrame]>,
     pub(super) rate: f64,
     pub(super) radius: Option<f32>,
@@ -80,12 +80,11 @@ pub(super) struct RecordedFrame {
 }
 
 impl FluidRecording {
-    /// Looks for the frames in the background, as an asset: a pattern such as
-    /// `"frames/dam_####.vtk"`, the name of one file, or [`RecordingSettings`]. Asset servers take
-    /// `#` for something else, so that patterns cannot be loaded by their names; a `.fluid.ron`
-    /// can.
+    /// Finds the frames in the background, as an asset, from a pattern such as
+    /// `"frames/dam_####.vtk"`, the name of one file, or [`RecordingSettings`]. Asset servers use
+    /// `#` for labels, so a pattern cannot be loaded by its name; a `.fluid.ron` can.
     ///
-    /// What goes wrong is logged and becomes the asset's `LoadState`: see [`RecordingError`].
+    /// Errors are logged and become the asset's `LoadState`: see [`RecordingError`].
     pub fn load(server: &AssetServer, settings: impl Into<RecordingSettings>) -> Handle<Self> {
         let settings = settings.into();
         let finder = server.clone();
@@ -97,7 +96,7 @@ impl FluidRecording {
         self.frames.len()
     }
 
-    /// The numbers in the files' names, rising.
+    /// The numbers in the files' names, in ascending order.
     pub fn numbers(&self) -> impl Iterator<Item = u32> {
         self.frames.iter().map(|frame| frame.number)
     }
@@ -107,13 +106,13 @@ impl FluidRecording {
         self.rate
     }
 
-    /// When the last frame is shown. Unit: s.
+    /// Time of the last frame. Unit: s.
     pub fn end(&self) -> f64 {
         let number = |frame: Option<&RecordedFrame>| frame.map_or(0.0, |f| f.number.into());
         (number(self.frames.last()) - number(self.frames.first())) / self.rate
     }
 
-    /// How long a round takes: the last frame is there as long as the others. Unit: s.
+    /// Length of one round, in which the last frame is shown as long as the others. Unit: s.
     pub fn duration(&self) -> f64 {
         self.end() + 1.0 / self.rate
     }

@@ -1,4 +1,4 @@
-//! The frames that a player holds: loaded in the background, never more than it may.
+//! A player's frames: loaded in the background, never more than the cache may hold.
 
 use std::sync::Arc;
 
@@ -16,11 +16,11 @@ use super::{
     playhead::Playhead,
 };
 
-/// The frames that a [`RecordingPlayer`](super::RecordingPlayer) has loaded, and what it shows of
-/// them.
+/// The frames that a [`RecordingPlayer`](super::RecordingPlayer) has loaded, and the one that it
+/// shows.
 #[derive(Component, Debug, Default)]
 pub struct LoadedFrames {
-    /// Those of the whole recording; to see that it is another now, or has been loaded anew.
+    /// The frames of the whole recording, compared to detect another or a reloaded one.
     recorded: Arc<[RecordedFrame]>,
     slots: Vec<Slot>,
     /// Those that have not turned out to be damaged, by number.
@@ -31,7 +31,7 @@ pub struct LoadedFrames {
     pub(super) shown: Option<Shown>,
     pub(super) shown_radius: Option<f32>,
     pub(super) shown_number: Option<u32>,
-    /// Since the last seek nothing of what was asked for has been shown.
+    /// Whether nothing requested has been shown since the last seek.
     pub(super) is_seeking: bool,
     pub(super) is_waiting: bool,
     /// The player's time as we left it: another one is a seek.
@@ -65,27 +65,27 @@ impl Slot {
 }
 
 impl LoadedFrames {
-    /// How many frames are in memory or on their way there.
+    /// Number of frames in memory, loading ones included.
     pub fn held(&self) -> usize {
         self.slots.len()
     }
 
-    /// How many frames are on their way.
+    /// Number of frames that are loading.
     pub fn loading(&self) -> usize {
         self.slots.iter().filter(|slot| !slot.is_ready()).count()
     }
 
-    /// The number of the frame that is shown, or of the one before the moment that is.
+    /// The number of the frame shown; under interpolation, of the earlier one.
     pub fn shown(&self) -> Option<u32> {
         self.shown_number
     }
 
-    /// Whether what the player's time asks for is not there yet.
+    /// Whether the frames for the player's time are still loading.
     pub fn is_waiting(&self) -> bool {
         self.is_waiting
     }
 
-    /// How many frames have turned out to be damaged or missing.
+    /// Number of frames found to be damaged or missing.
     pub fn skipped(&self) -> usize {
         self.recorded.len() - self.playable.len()
     }
@@ -143,7 +143,7 @@ impl LoadedFrames {
         ready.map(|slot| slot.frame)
     }
 
-    /// Has the frames loaded that come next, and drops others for them.
+    /// Loads the frames that come next, and drops others for them.
     pub(super) fn load(
         &mut self,
         head: &Playhead,
@@ -156,7 +156,7 @@ impl LoadedFrames {
         self.window.extend(next.map(|place| self.playable[place]));
         let window = &self.window;
         if self.is_seeking {
-            // What is on its way to where nobody looks any more.
+            // Frames still loading that are no longer needed.
             self.slots
                 .retain(|slot| slot.is_ready() || window.contains(&slot.frame));
         }
@@ -172,8 +172,8 @@ impl LoadedFrames {
                 continue;
             }
             if self.slots.len() == cache {
-                // One that is still loading is shown late rather than never: else play that is
-                // faster than its files would show none at all.
+                // A frame that is still loading is shown late rather than never: otherwise playback
+                // that is faster than its files would show none at all.
                 let passed = |slot: &Slot| slot.is_ready() && !window.contains(&slot.frame);
                 let Some(passed) = self.slots.iter().position(passed) else {
                     break;

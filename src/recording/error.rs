@@ -1,14 +1,14 @@
-//! Why there is no recording.
+//! Errors of recordings.
 
 use thiserror::Error;
 
 use super::frame::FrameError;
 
-/// Why a recording cannot be found or played; the culprit is named.
+/// Why a recording cannot be found or played; the error names the cause.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The pattern of the frames' names makes no sense.
+    /// The pattern of the frames' names is invalid.
     #[error("`{pattern}` is no pattern of frames: {reason}")]
     Pattern {
         /// The pattern.
@@ -16,10 +16,10 @@ pub enum RecordingError {
         /// Why.
         reason: &'static str,
     },
-    /// The frames' own files are at fault.
+    /// A frame's file has an error.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The frame rate is not a positive number, or the radius.
+    /// The frame rate or the radius is not a positive number.
     #[error("recording `{pattern}`: its {field} is {value}; it must be a positive number")]
     Value {
         /// The pattern.
@@ -41,22 +41,22 @@ pub enum RecordingError {
         /// Why.
         reason: String,
     },
-    /// No file fits, or the first number is above the last.
+    /// No file matches, or the first number is above the last.
     #[error("there are no frames `{pattern}` from {first} to {last}")]
     NoFrames {
         /// The pattern.
         pattern: String,
-        /// The first number asked for.
+        /// The first number requested.
         first: u32,
-        /// The last number asked for.
+        /// The last number requested.
         last: u32,
     },
-    /// More frames are asked for than recordings have.
+    /// More frames are requested than a recording may have.
     #[error("`{pattern}` asks for more than {most} frames")]
     TooManyFrames {
         /// The pattern.
         pattern: String,
-        /// The most that there may be.
+        /// The maximum.
         most: u32,
     },
     /// The `.fluid.ron` file cannot be read.

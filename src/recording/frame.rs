@@ -16,19 +16,19 @@ use super::format::ParticleFormat;
 pub struct ParticleFrame {
     /// Centres, in the file's order. Unit: m. Those that are not finite are kept.
     pub positions: Vec<Vec3>,
-    /// Who is who from frame to frame: one for each particle, or none at all.
+    /// Ids that match particles from frame to frame: one for each particle, or none at all.
     pub ids: Vec<u32>,
-    /// One for each particle, or none at all. Unit: m/s.
+    /// Velocities: one for each particle, or none at all. Unit: m/s.
     pub velocities: Vec<Vec3>,
-    /// Radius of the particles, the mean where they differ, if the file knows. Unit: m, > 0.
+    /// Radius of the particles, the mean where they differ, if the file has it. Unit: m, > 0.
     pub radius: Option<f32>,
 }
 
-/// Why a frame cannot be read or written; the file is named.
+/// Why a frame cannot be read or written; the error names the file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// The file does not open or does not end.
+    /// The file cannot be opened or read to its end.
     #[error("cannot read {name}: {reason}")]
     Read {
         /// The file.
@@ -36,19 +36,19 @@ pub enum FrameError {
         /// Why.
         reason: String,
     },
-    /// The file's extension is that of no format.
+    /// The file's extension is unknown.
     #[error("{name} has no known particle format: .vtk, .bgeo, .ply or .xyz is expected")]
     Format {
         /// The file.
         name: String,
     },
-    /// There is nothing in the file, not even a header.
+    /// The file is empty: it has not even a header.
     #[error("{name} is empty")]
     Empty {
         /// The file.
         name: String,
     },
-    /// What is in the file breaks the rules of its format.
+    /// The file breaks the rules of its format.
     #[error("{name} is damaged: {reason}")]
     Damaged {
         /// The file.
@@ -67,9 +67,9 @@ pub enum FrameError {
 }
 
 impl ParticleFrame {
-    /// Parses what is in the file `name`, whose extension says the format. Memory and time are
-    /// bounded by the bytes that are there, whatever the header says of them (a zipped `.bgeo` may
-    /// unfold to 1 GiB).
+    /// Parses the content of the file `name`, whose extension sets the format. Memory and time are
+    /// bounded by the actual bytes, whatever the header claims (a zipped `.bgeo` may unzip to 1
+    /// GiB).
     ///
     /// # Errors
     /// [`FrameError::Format`], [`FrameError::Empty`] and [`FrameError::Damaged`].
@@ -87,7 +87,7 @@ impl ParticleFrame {
             })
     }
 
-    /// Reads a file of the file system.
+    /// Reads a file from the file system.
     ///
     /// # Errors
     /// [`FrameError::Read`] and those of [`parse`](Self::parse).
@@ -100,12 +100,11 @@ impl ParticleFrame {
         Self::parse(&name, &bytes)
     }
 
-    /// Writes a file of the file system, in the format of its extension. The file is there as a
-    /// whole or not at all.
+    /// Writes a file to the file system, in the format of its extension. The file is written
+    /// completely or not at all.
     ///
     /// # Errors
-    /// [`FrameError::Format`] and [`FrameError::Write`]; nothing is left of a file that could not
-    /// be written.
+    /// [`FrameError::Format`] and [`FrameError::Write`]; no partial file is left.
     pub fn write(&self, path: &Path) -> Result<(), FrameError> {
         self.write_with(path, &mut Vec::new())
     }
@@ -149,7 +148,7 @@ pub(super) fn is_radius(radius: f32) -> bool {
     radius > 0.0 && radius.is_finite()
 }
 
-/// Puts a file in its place once all of it is written, so that nobody reads half of one.
+/// Puts a file in its place once all of it is written, so that no partial file is read.
 pub(super) fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
     // Hidden, so that no listing of frames holds it.

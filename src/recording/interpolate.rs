@@ -1,4 +1,4 @@
-//! What lies between two frames.
+//! Interpolation between two frames.
 
 use std::cmp::Ordering;
 
@@ -6,8 +6,8 @@ use bevy::prelude::*;
 
 use super::frame::ParticleFrame;
 
-/// The frame in the order of its ids, so that two can be walked through side by side. Ids that are
-/// there twice say nothing: they are left out, and the order stays the file's.
+/// The frame in the order of its ids, so that two can be walked through side by side. If an id
+/// occurs twice, all ids are dropped, and the order stays the file's.
 pub(super) fn in_order_of_ids(mut frame: ParticleFrame) -> ParticleFrame {
     let ids = &frame.ids;
     if ids.is_sorted_by(|a, b| a < b) {
@@ -75,7 +75,7 @@ impl Between<'_> {
         (self.by_velocity && velocity.is_finite()).then_some(velocity)
     }
 
-    /// It moves on, or has moved there, as fast as in its frame.
+    /// A particle of only one frame, extrapolated with its velocity there.
     fn one(&self, frame: &ParticleFrame, at: usize, share: f32) -> Vec3 {
         let velocity = self.velocity(frame, at).unwrap_or_default();
         frame.positions[at] + velocity * (share * self.seconds)

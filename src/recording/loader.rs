@@ -55,7 +55,7 @@ pub struct FluidRecordingLoader {
     server: Weak<AssetServer>,
 }
 
-/// What keeps the loader's server, for as long as there is a world.
+/// Keeps the loader's server alive as long as the world.
 #[derive(Resource)]
 struct KeptServer(Arc<AssetServer>);
 

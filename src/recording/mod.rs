@@ -6,7 +6,7 @@
 //!   (`asset_server.load("frames/dam.fluid.ron")`).
 //! - [`RecordingPlayer`] on a fluid plays one: its frames are loaded in the background, and only as
 //!   many as its cache may hold.
-//! - [`RecordingWriter`] on a fluid makes one.
+//! - [`RecordingWriter`] on a fluid records one.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -22,14 +22,14 @@
 //! }
 //! ```
 //!
-//! Some of the readers of particle files check what they read by panicking. That is caught and becomes
-//! an error that names the file. So that nothing is printed of it, the first `.vtk` or `.ply` that is
-//! read wraps the process's panic hook, once and for good: all other panics still reach the hook that
-//! was there. A hook that the program sets afterwards replaces the wrapped one, and hears of damaged
-//! files too.
+//! Some of the readers of particle files panic on invalid input. The panic is caught and becomes an
+//! error that names the file. To keep it from being printed, the first `.vtk` or `.ply` that is
+//! read wraps the process's panic hook, permanently: all other panics still reach the previous
+//! hook. A hook that the program sets afterwards replaces the wrapped one, and is called for
+//! damaged files too.
 //!
-//! A player reads assets, a writer writes to the file system: patterns of the one are asset paths,
-//! those of the other are the system's; absolute paths are the same for both.
+//! A player reads assets, a writer writes to the file system: a player's patterns are asset paths,
+//! a writer's are file system paths; absolute paths are the same for both.
 
 mod asset;
 mod cache;
@@ -61,11 +61,11 @@ pub use self::{
 };
 use crate::schedule::FluidSystems;
 
-/// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; without that plugin,
-/// as in a program that records and draws nothing, it does its work alone. It needs Bevy's
-/// `AssetPlugin` and `Time`.
+/// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; it also works without
+/// that plugin, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
+/// `Time`.
 ///
-/// Players play in [`FluidSystems::Simulate`]; what is written is what is then there.
+/// Players run in [`FluidSystems::Simulate`]; writers run after it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RecordingPlugin;
 

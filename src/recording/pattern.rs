@@ -7,8 +7,8 @@ use super::{error::RecordingError, format::ParticleFormat};
 /// A file name with a number in it: `frames/dam_####.vtk`, as Blender and Houdini write it, or
 /// `frames/dam_{}.vtk`, as splashsurf does.
 ///
-/// Files are found with any number of digits; names are made with at least as many as there are
-/// signs. Without a sign the pattern is the name of one file.
+/// Files match with any number of digits; written names have at least one digit for each `#`.
+/// Without a `#` or `{}` the pattern is the name of one file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FramePattern {
     /// With the slash at its end, or empty.
@@ -23,8 +23,8 @@ impl FramePattern {
     /// Parses a pattern.
     ///
     /// # Errors
-    /// [`RecordingError::Pattern`] where two numbers are asked for, or one in the folder's name, and
-    /// [`RecordingError::Frame`] where the extension is that of no format.
+    /// [`RecordingError::Pattern`] for two numbers, or one in the folder's name, and
+    /// [`RecordingError::Frame`] for an unknown extension.
     pub fn parse(pattern: &str) -> Result<Self, RecordingError> {
         let refuse = |reason| {
             Err(RecordingError::Pattern {
@@ -82,7 +82,7 @@ impl FramePattern {
         }
     }
 
-    /// The number in a file's name, or `None` where the file is not one of these.
+    /// The number in a file's name, or `None` if the name does not match.
     pub fn number(&self, file_name: &str) -> Option<u32> {
         self.digits?;
         let middle = file_name.strip_prefix(self.before.as_str())?;
@@ -92,7 +92,7 @@ impl FramePattern {
         middle.parse().ok().filter(|_| is_number)
     }
 
-    /// What the files' names have in common: `dam` of `frames/dam_####.vtk`.
+    /// The common part of the files' names: `dam` of `frames/dam_####.vtk`.
     pub(super) fn stem(&self) -> &str {
         let stem = self.before.trim_end_matches(['_', '-', '.', ' ']);
         if stem.is_empty() { "recording" } else { stem }

@@ -1,4 +1,4 @@
-//! Plays: moves the clock on, shows what is there, has the rest loaded.
+//! Playback: advances the clock, shows loaded frames, loads the rest.
 
 use bevy::{asset::AssetServer, prelude::*};
 
@@ -70,7 +70,7 @@ fn moved(
     let time = player.clamped_time();
     let is_sought = frames.left_at.is_some_and(|left_at| left_at != player.time);
     frames.is_seeking |= is_sought;
-    // What is sought is shown before it moves on, and so is the start.
+    // The target of a seek is shown before the clock moves on, and so is the start.
     let stands = is_sought || player.paused || frames.shown.is_none();
     let seconds = if stands {
         0.0
@@ -82,7 +82,7 @@ fn moved(
     now
 }
 
-/// What to show: the moment itself if it is there, else the latest frame that has been passed.
+/// What to show: the moment itself if it is loaded, else the latest frame passed.
 fn choose(
     frames: &mut LoadedFrames,
     head: &Playhead,

@@ -11,66 +11,66 @@ use crate::{particles::FluidParticles, range::SettingRange};
 const MAX_RATE: f32 = 100.0;
 const CACHES: [usize; 2] = [2, 1024];
 
-/// Plays a [`FluidRecording`] into the [`FluidParticles`] beside it.
+/// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity.
 ///
-/// Frames are loaded in the background, ahead of where it plays to. One that is not there in time
-/// does not hold the program up: the one that is shown stays, and the clock goes on. The clock
-/// starts with the first frame shown. `FluidParticles` changes only when what is shown does.
+/// Frames are loaded in the background, ahead of playback. A late frame does not block the program:
+/// the current one stays, and the clock goes on. The clock starts with the first frame shown.
+/// `FluidParticles` changes only when the frame or the moment shown does.
 ///
-/// A frame that cannot be read is named in the log, once, and skipped like a number that is left
-/// out. The radius is the file's; else [`radius`](Self::radius), else the recording's, else the one
-/// that `FluidParticles` has.
+/// A frame that cannot be read is logged once, by name, and skipped like a missing number. The
+/// radius is the file's; else [`radius`](Self::radius), else the recording's, else that of
+/// `FluidParticles`.
 ///
-/// Every player has frames of its own: two that play one recording read its files twice, each at its
+/// Every player has its own frames: two players of one recording read its files twice, each at its
 /// own time.
 ///
-/// Values out of their range are said once and played as the nearest in range; a radius that is not
-/// a positive number counts as not given.
+/// Values out of range are logged once and clamped; a radius that is not a positive number is
+/// ignored.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, LoadedFrames)]
 pub struct RecordingPlayer {
-    /// What is played.
+    /// The recording to play.
     pub recording: Handle<FluidRecording>,
-    /// Where in the recording it is; set it to seek. Unit: s from the first frame. Finite, default 0.
-    /// It is kept between 0 and the recording's [`end`](FluidRecording::end), or, where it repeats,
+    /// Playback time; set it to seek. Unit: s from the first frame. Finite, default 0.
+    /// It is kept between 0 and the recording's [`end`](FluidRecording::end), or, when repeating,
     /// below its [`duration`](FluidRecording::duration).
     #[reflect(@SettingRange::new(0.0, 600.0).unit("s").open())]
     pub time: f64,
-    /// Seconds of recorded time per second. Range −100..=100, default 1. Higher: faster; 0 stands
-    /// still; negative: backwards.
+    /// Seconds of recorded time per second. Range −100..=100, default 1. Higher: faster; 0:
+    /// stopped; negative: backwards.
     #[reflect(@SettingRange::new(-100.0, 100.0))]
     pub rate: f32,
-    /// Whether the clock stands still. Default: false.
+    /// Whether the clock is paused. Default: false.
     pub paused: bool,
-    /// Whether it starts over at its end, or ahead of its start when played backwards. Default:
-    /// false: it stays there.
+    /// Whether playback starts over at the end, or at the start when played backwards. Default:
+    /// false: it stops there.
     pub repeat: bool,
-    /// What is shown between two frames. Default: [`Interpolation::Velocity`].
+    /// Interpolation between two frames. Default: [`Interpolation::Velocity`].
     pub interpolation: Interpolation,
-    /// The most frames that are held in memory, loading ones included. Range 2..=1024, default 8.
-    /// Higher: slow files and fast play are better served.
+    /// Maximum number of frames in memory, loading ones included. Range 2..=1024, default 8.
+    /// Higher: smoother with slow files and fast playback.
     #[reflect(@SettingRange::new(2.0, 1024.0).unit("frames").logarithmic())]
     pub cache: usize,
-    /// Radius where the files do not hold it. Unit: m, > 0. Default: none.
+    /// Radius if the files have none. Unit: m, > 0. Default: none.
     #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open().start(0.025))]
     pub radius: Option<f32>,
 }
 
-/// What is shown between two frames.
+/// Interpolation of particles between two frames.
 ///
-/// Particles are followed by their ids. Where a frame has none, nobody knows who is who, and the
-/// nearer of the two frames is shown. A particle that only one of the frames has is shown in the
-/// half of the time that is nearer to it.
+/// Particles are matched by their ids. If a frame has none, the nearer of the two frames is shown.
+/// A particle in only one of the frames is shown in the half of the time that is nearer to that
+/// frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Interpolation {
-    /// The frame before.
+    /// No interpolation: the earlier frame.
     None,
-    /// Every particle moves on a line.
+    /// Linear interpolation: every particle moves on a line.
     Linear,
-    /// Every particle moves on the cubic that has the frames' positions and velocities (Hermite);
-    /// on a line where the files hold no velocities.
+    /// Cubic (Hermite) interpolation of the frames' positions and velocities; linear if the files
+    /// have no velocities.
     #[default]
     Velocity,
 }
@@ -90,14 +90,14 @@ impl Default for RecordingPlayer {
     }
 }
 
-/// Which setting of a player makes no sense.
+/// Which setting of a player is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlayerError {
     /// The rate is out of range.
     #[error("`RecordingPlayer::rate` is {0}; it must be from -100 to 100")]
     Rate(f32),
-    /// The time is no number.
+    /// The time is not finite.
     #[error("`RecordingPlayer::time` is {0}; it must be finite")]
     Time(f64),
     /// The size of the cache is out of range.
@@ -117,7 +117,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// The same, over and over.
+    /// The same, repeating.
     pub fn repeating(self) -> Self {
         Self {
             repeat: true,
@@ -125,7 +125,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// Goes to a time, in seconds from the first frame: the same as setting [`time`](Self::time).
+    /// Seeks to a time, in seconds from the first frame: the same as setting [`time`](Self::time).
     pub fn seek(&mut self, time: f64) {
         self.time = time;
     }
@@ -151,7 +151,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// The rate, or the nearest in range; the default's where it is no number.
+    /// The clamped rate; the default for NaN.
     pub(super) fn clamped_rate(&self) -> f64 {
         if self.rate.is_nan() {
             return 1.0;
@@ -159,7 +159,7 @@ impl RecordingPlayer {
         self.rate.clamp(-MAX_RATE, MAX_RATE).into()
     }
 
-    /// The time, or the recording's start where it is none.
+    /// The time, or the recording's start if it is not finite.
     pub(super) fn clamped_time(&self) -> f64 {
         if self.time.is_finite() {
             self.time
@@ -168,7 +168,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// The radius, if particles can have it.
+    /// The radius, if it is valid.
     pub(super) fn sound_radius(&self) -> Option<f32> {
         self.radius.filter(|&radius| is_radius(radius))
     }
@@ -178,7 +178,7 @@ impl RecordingPlayer {
     }
 }
 
-/// Says what makes no sense, once for each field.
+/// Logs invalid settings, once for each field.
 pub(super) fn check_players(
     changed: Query<(Entity, &RecordingPlayer), Changed<RecordingPlayer>>,
     mut gone: RemovedComponents<RecordingPlayer>,

@@ -1,4 +1,4 @@
-//! Times and frames: which two a moment lies between, and which come next.
+//! Times and frames: the two frames around a moment, and those that come next.
 
 use super::asset::FluidRecording;
 
@@ -38,7 +38,7 @@ impl Playhead {
         };
         Self {
             before,
-            // At a frame, nothing is asked of the next.
+            // Exactly at a frame, the next is not needed.
             after: if share > 0.0 { after } else { before },
             share,
             is_forward,

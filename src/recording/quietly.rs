@@ -1,4 +1,4 @@
-//! Readers that check their assumptions by panicking.
+//! Readers that panic on invalid input.
 
 use std::{
     cell::Cell,
@@ -8,10 +8,10 @@ use std::{
 
 thread_local!(static IS_QUIET: Cell<bool> = const { Cell::new(false) });
 
-/// What `read` returns, or `None` where it panics, of which nothing is printed.
+/// The result of `read`, or `None` if it panics, without printing the panic.
 ///
-/// The hook that prints belongs to the whole process, and frames are read in many threads at a time:
-/// it is wrapped once, and each thread says for itself whether it is quiet.
+/// The panic hook belongs to the whole process, and frames are read on many threads at a time: it
+/// is wrapped once, and each thread has its own flag that silences it.
 pub(super) fn quietly<T>(read: impl FnOnce() -> T) -> Option<T> {
     static WRAPPED: Once = Once::new();
     WRAPPED.call_once(|| {

@@ -1,4 +1,4 @@
-//! Bind groups of all passes, once their textures and uniforms are there.
+//! Bind groups of all passes, created once their textures and uniforms exist.
 
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
@@ -25,7 +25,7 @@ use super::{
     splat::SplatPipeline,
 };
 
-/// The layouts, and what fills them.
+/// The layouts and their resources.
 #[derive(bevy::ecs::system::SystemParam)]
 pub(crate) struct Sources<'w> {
     cache: Res<'w, PipelineCache>,
@@ -49,7 +49,7 @@ pub(crate) fn prepare_splat_bind_groups(mut fluids: Query<&mut GpuSplats>, sourc
         else {
             continue;
         };
-        // Asked for here: a device without storage buffers has no such layout, nor any splats.
+        // Requested only here: a device without storage buffers has no such layout, nor any splats.
         let layout = sources
             .cache
             .get_bind_group_layout(&sources.splat.fluid_layout);

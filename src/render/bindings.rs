@@ -1,4 +1,4 @@
-//! What every pass of a body sees: view, body and the scene's depth. See `bindings.wgsl`.
+//! Bindings shared by every pass of a body: view, body and the scene's depth. See `bindings.wgsl`.
 
 use bevy::{
     prelude::*,
@@ -76,7 +76,7 @@ pub(crate) fn fragment(
     }
 }
 
-/// The larger of what is there and what is drawn.
+/// Keeps the larger of the old and the new value.
 pub(crate) const MAX_BLEND: BlendState = {
     let max = BlendComponent {
         src_factor: BlendFactor::One,
@@ -89,7 +89,7 @@ pub(crate) const MAX_BLEND: BlendState = {
     }
 };
 
-/// The sum of what is there and what is drawn.
+/// Keeps the sum of the old and the new value.
 pub(crate) const SUM_BLEND: BlendState = {
     let sum = BlendComponent {
         src_factor: BlendFactor::One,

@@ -3,7 +3,7 @@
 #import bevy_fluid::render::types::GpuBody
 #import bevy_render::view::View
 
-// What every pass of a body in a view sees.
+// Bindings shared by every pass of a body in a view.
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<uniform> body: GpuBody;
 // The opaque scene's depth: (nearest, farthest) of a pixel's samples.

@@ -1,4 +1,4 @@
-//! The bodies of a view: fluids of equal material, what they need this frame and where it goes.
+//! The bodies of a view: fluids of equal material, with their plans and resources for the frame.
 
 use core::ops::Range;
 
@@ -35,11 +35,11 @@ use super::{
 };
 use crate::settings::{FluidDebugView, ScreenSpaceFluid};
 
-/// Fluids of equal material that a view sees, and everything their passes need.
+/// Fluids of equal material in a view, and everything their passes need.
 pub struct Body {
-    /// What is done for it this frame.
+    /// The work planned for this frame.
     pub plan: Plan,
-    /// What its passes draw into.
+    /// The textures that its passes draw into.
     pub layers: Layers,
     /// The pixels it may cover.
     pub scissor: URect,
@@ -86,13 +86,13 @@ impl Body {
         }
     }
 
-    /// Called once the bind groups are there: a body whose pipelines still compile waits.
+    /// Called once the bind groups exist. A body whose pipelines are still compiling is not drawn.
     pub(crate) fn mark_ready(&mut self, cache: &PipelineCache, scene_depth: bool) {
         self.ready = scene_depth && self.groups.common.is_some() && self.pipelines.ready(cache);
     }
 }
 
-/// The bodies a view sees, from far to near. A view that sees none has no such component.
+/// The bodies in a view. A view without bodies lacks this component.
 #[derive(Component)]
 pub struct ViewBodies {
     /// From far to near.
@@ -122,7 +122,7 @@ pub(crate) struct FluidUniforms {
     pub(crate) depth_ranges: DynamicUniformBuffer<Vec4>,
 }
 
-/// Writes where every fluid stands.
+/// Writes the transform of every fluid.
 pub(crate) fn prepare_fluids(
     mut fluids: Query<(&ExtractedFluid, &mut GpuSplats)>,
     mut uniforms: ResMut<FluidUniforms>,
@@ -139,7 +139,7 @@ pub(crate) fn prepare_fluids(
     uniforms.fluids.write_buffer(&device, &queue);
 }
 
-/// Groups the fluids of every view into bodies, plans their passes and gives them textures.
+/// Groups the fluids of every view into bodies, plans their passes and allocates their textures.
 pub(crate) fn prepare_bodies(
     mut commands: Commands,
     views: Query<(
@@ -171,7 +171,7 @@ pub(crate) fn prepare_bodies(
     uniforms.bodies.clear();
     uniforms.depth_ranges.clear();
     let mut report = reporter.begin();
-    // Also of cameras that draw no fluids any more, or rest.
+    // Also for cameras that no longer draw fluids or are inactive.
     for entity in &stale {
         commands.entity(entity).remove::<ViewBodies>();
     }
@@ -188,7 +188,8 @@ pub(crate) fn prepare_bodies(
         if let Some(size) = resolution {
             (viewport.z, viewport.w) = (size.x, size.y);
         }
-        // All about the eye: far from the origin a product of large numbers would lose metres.
+        // Everything is relative to the eye: far from the origin, a product of large numbers would
+        // lose metres.
         let eye = view.world_from_view.translation();
         let view_from_eye =
             Affine3A::from_mat3(view.world_from_view.affine().matrix3.inverse().into());
@@ -264,7 +265,7 @@ pub(crate) fn prepare_bodies(
                 continue;
             };
             let steps = SmoothSteps::new(&plan.smoothing);
-            // A scaled camera has other metres than the world.
+            // A scaled camera's metres differ from the world's.
             let view_scale = mean_scale(&view_from_eye.matrix3);
             let mut body = GpuBody::new(material, radius * view_scale, settings, &plan.smoothing);
             let cubemaps = lighting.shine_on(&mut body, material.medium.emission);

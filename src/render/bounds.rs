@@ -44,8 +44,8 @@ impl Bounds {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
-    /// Whether nothing of `other` can hide anything of this box from `eye`: they lie apart along
-    /// an axis, and the eye is on this one's side.
+    /// Whether `other` cannot hide any part of this box from `eye`: they are separated along an
+    /// axis, and the eye is on this one's side.
     pub(crate) fn before(&self, other: &Self, eye: Vec3) -> bool {
         (0..3).any(|axis| {
             let above = self.min[axis] >= other.max[axis] && eye[axis] >= other.max[axis];
@@ -55,8 +55,8 @@ impl Bounds {
     }
 }
 
-/// The order in which boxes are painted: each after all that it may hide, as far as boxes tell;
-/// where they overlap, or hide each other in a ring, the farther centre first.
+/// The order in which boxes are painted: each after all that it may hide, judged by the boxes
+/// alone; where they overlap or hide each other in a ring, the farther centre first.
 pub(crate) fn far_to_near(eye: Vec3, boxes: &[Bounds]) -> Vec<usize> {
     let distance = |&i: &usize| boxes[i].center().distance_squared(eye);
     let mut left: Vec<usize> = (0..boxes.len()).collect();
@@ -125,7 +125,7 @@ impl Bounds {
         let origin = viewport.xy();
         let size = viewport.zw();
         let whole = URect::from_corners(origin, origin + size);
-        // Its projection has no bound.
+        // The projection is unbounded.
         if self.near_plane_cuts(clip_from_eye) {
             return Some(whole);
         }

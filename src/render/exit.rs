@@ -1,26 +1,26 @@
-//! The Rust twin of `pack_exit` in `refract.wgsl`: what [`Layers::exits`](super::Layers::exits)
-//! holds.
+//! The Rust twin of `pack_exit` in `refract.wgsl`: the contents of
+//! [`Layers::exits`](super::Layers::exits).
 
 use bevy::math::{Vec2, Vec3, vec2};
 
 use super::gpu_types::SearchStatus;
 
-/// What is left of a pixel's ray behind the last interface that it has met.
+/// The rest of a pixel's ray behind the last interface that it met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExitRay {
-    /// Where it starts on screen, as fractions of the viewport from its upper left.
+    /// Start on screen, as fractions of the viewport from its upper left.
     pub uv: Vec2,
-    /// Where it starts in device depth (reverse z).
+    /// Start in device depth (reverse z).
     pub device_depth: f32,
-    /// Where it goes: a unit vector in view space.
+    /// Direction: a unit vector in view space.
     pub direction: Vec3,
     /// How the searches ended, in order.
     pub searches: [SearchStatus; 4],
-    /// How many interfaces were met.
+    /// Number of interfaces met.
     pub interfaces: u32,
-    /// How often the searches asked a layer for its depth; at most 255.
+    /// Number of times the searches sampled a layer's depth; at most 255.
     pub evaluations: u32,
-    /// Whether the background is what is on screen at `uv`.
+    /// Whether the background is the scene's colour on screen at `uv`.
     pub direct: bool,
     /// Whether the first interface belongs to the spray.
     pub spray_first: bool,
@@ -48,7 +48,7 @@ fn halves(word: u32) -> [u16; 2] {
     [word as u16, (word >> 16) as u16]
 }
 
-/// The unit vector of an octahedral code (Meyer et al. 2010), as layers of normals hold them.
+/// The unit vector of an octahedral code (Meyer et al. 2010), as stored in layers of normals.
 pub fn decode_normal(code: [f32; 2]) -> Vec3 {
     let [x, y] = code;
     let z = 1.0 - x.abs() - y.abs();

@@ -1,4 +1,4 @@
-//! What the render world takes over each frame. Particles are swapped, never copied.
+//! Extraction into the render world. Particles are swapped, never copied.
 
 use bevy::{
     camera::visibility::RenderLayers,
@@ -57,7 +57,7 @@ impl ExtractComponent for ScreenSpaceFluid {
                 let skybox = skybox?;
                 Some(EnvironmentMap {
                     image: skybox.image.clone()?,
-                    // As meshes are, the medium is not lit by it.
+                    // Like meshes, the medium is not lit by the sky box.
                     diffuse: None,
                     intensity: skybox.brightness,
                     rotation: skybox.rotation,
@@ -86,18 +86,18 @@ impl ExtractComponent for FluidDebugView {
     }
 }
 
-/// A cubemap of what is far away.
+/// A cubemap of the distant surroundings.
 #[derive(Clone)]
 pub(crate) struct EnvironmentMap {
     pub(crate) image: Handle<Image>,
-    /// The same light by the direction that a matte surface faces.
+    /// The diffuse light by the normal of a matte surface.
     pub(crate) diffuse: Option<Handle<Image>>,
     /// cd/m² per texel value.
     pub(crate) intensity: f32,
     pub(crate) rotation: Quat,
 }
 
-/// What a view sees beside the fluid.
+/// The surroundings of the fluid in a view.
 #[doc(hidden)]
 #[derive(Component, Clone)]
 pub struct ViewSurroundings {
@@ -107,20 +107,20 @@ pub struct ViewSurroundings {
     pub(crate) ambient: Option<Vec3>,
 }
 
-/// The scene's lights that come from far away.
+/// The scene's distant lights.
 #[derive(Resource, Default)]
 pub(crate) struct FluidLights {
     pub(crate) lights: [GpuDirectionalLight; MAX_LIGHTS],
     pub(crate) count: u32,
     /// Mean over all directions of all directional lights, cd/m².
     mean: Vec3,
-    /// Where a camera has none of its own, cd/m².
+    /// Ambient light for cameras without their own, cd/m².
     ambient: Vec3,
 }
 
 impl FluidLights {
-    /// The mean luminance over all directions, without what environment maps add; `ambient` is
-    /// the camera's own.
+    /// The mean luminance over all directions, without environment maps; `ambient` is the camera's
+    /// own.
     pub(crate) fn even(&self, ambient: Option<Vec3>) -> Vec3 {
         self.mean + ambient.unwrap_or(self.ambient)
     }
@@ -143,7 +143,7 @@ pub(crate) fn extract_lights(
     let visible = lights.iter().filter(|(_, _, visibility)| visibility.get());
     for (slot, (light, transform, _)) in visible.enumerate() {
         let illuminance = luminance(light.color, light.illuminance);
-        // The light of one direction, spread over the sphere.
+        // The light from one direction, averaged over the sphere.
         extracted.mean += illuminance / (4.0 * core::f32::consts::PI);
         if slot < MAX_LIGHTS {
             extracted.lights[slot] = GpuDirectionalLight {
@@ -155,7 +155,7 @@ pub(crate) fn extract_lights(
     }
 }
 
-/// A fluid in the render world: where it is, what it is made of and its splats.
+/// A fluid in the render world: its transform, material and splats.
 #[doc(hidden)]
 #[derive(Component, Default)]
 pub struct ExtractedFluid {
@@ -163,9 +163,9 @@ pub struct ExtractedFluid {
     pub(crate) material: FluidMaterial,
     pub(crate) layers: RenderLayers,
     pub(crate) visible: bool,
-    /// In world units.
+    /// Particle radius in world units.
     pub(crate) radius: f32,
-    /// In the fluid's own.
+    /// Particle radius in the fluid's own units.
     pub(crate) local_radius: f32,
     pub(crate) bounds: Bounds,
     pub(crate) bulk: u32,
@@ -189,15 +189,15 @@ impl SyncComponent for FluidParticles {
 #[derive(Component, Default)]
 pub struct GpuSplats {
     pub(crate) buffer: Option<Buffer>,
-    /// Where the fluid stands, in the buffer of all fluids' transforms.
+    /// Offset of the fluid's transform in the buffer of all fluids' transforms.
     pub(crate) offset: u32,
     pub(crate) bind_group: Option<BindGroup>,
-    /// How often splats have been uploaded.
+    /// Number of times that splats have been uploaded.
     pub uploads: u64,
 }
 
-/// Takes over transforms and materials every frame, splats only when they were shaped anew: the
-/// two worlds swap their buffers.
+/// Extracts transforms and materials every frame, splats only when they were reshaped: the two
+/// worlds swap their buffers.
 pub(crate) fn extract_fluids(
     mut main: ResMut<MainWorld>,
     mut state: Local<
@@ -234,7 +234,7 @@ pub(crate) fn extract_fluids(
         fluid
             .layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));
-        // Taking the splats is no change that anyone should react to.
+        // Taking the splats must not trigger change detection.
         let shaped = shaped.bypass_change_detection();
         if shaped.take_fresh() {
             let splats = &mut shaped.splats;
@@ -265,7 +265,7 @@ pub(crate) fn mean_scale(matrix: &Mat3A) -> f32 {
     }
 }
 
-/// After a device was lost its buffers are gone; the splats are still here.
+/// Drops the buffers of a lost device; the splats are still available.
 pub(crate) fn forget_buffers(mut fluids: Query<&mut GpuSplats>) {
     for mut gpu in &mut fluids {
         gpu.buffer = None;

@@ -37,7 +37,7 @@ fn device_from_view(position: vec3<f32>) -> vec3<f32> {
     return clip.xyz / clip.w;
 }
 
-// The way from device depth to view depth (positive forward) along one pixel's ray:
+// The map from device depth to view depth (positive forward) along one pixel's ray:
 // z = −(numerator · (1, d)) / (denominator · (1, d)).
 struct DepthMap {
     numerator: vec2<f32>,
@@ -88,11 +88,11 @@ fn normal_from_slope(ndc: vec2<f32>, depth: f32, slope: vec2<f32>) -> vec3<f32> 
     return unit_or_z(view_plane.xyz);
 }
 
-// The unit vector along `v`, of any length whose square f32 may not hold; +z, towards the viewer,
-// for what has no direction: where there is no layer there is no plane.
+// The unit vector along `v`, even if f32 cannot hold the square of its length; +z, towards the
+// viewer, if `v` has no direction: where there is no layer there is no plane.
 fn unit_or_z(v: vec3<f32>) -> vec3<f32> {
     let size = max(max(abs(v.x), abs(v.y)), abs(v.z));
-    // NaN is below nothing.
+    // Comparisons with NaN are false.
     let usable = all(abs(v) < vec3(1e38)) && size > 0.0;
     return select(vec3(0.0, 0.0, 1.0), normalize(v / size), usable);
 }
@@ -102,7 +102,7 @@ fn nearest_scene_depth(pixel: vec2<i32>) -> f32 {
     return textureLoad(scene_depth, pixel, 0).x;
 }
 
-// Farthest of a pixel's samples: what is behind it is hidden in every one of them.
+// Farthest of a pixel's samples: anything behind it is hidden in every one of them.
 fn farthest_scene_depth(pixel: vec2<i32>) -> f32 {
     return textureLoad(scene_depth, pixel, 0).y;
 }

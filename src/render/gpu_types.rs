@@ -11,7 +11,7 @@ use crate::{
 /// Directional lights that give highlights; further ones are left out.
 pub(crate) const MAX_LIGHTS: usize = 4;
 
-/// Where a fluid stands.
+/// Transform and particle radius of a fluid.
 #[derive(Clone, Copy, Default, ShaderType)]
 pub(crate) struct GpuFluid {
     pub(crate) world_from_local: Mat4,
@@ -25,7 +25,7 @@ pub(crate) struct GpuDirectionalLight {
     pub(crate) illuminance: Vec3,
 }
 
-/// What a body looks like in a view.
+/// Appearance of a body in a view.
 #[derive(Clone, Copy, Default, ShaderType)]
 pub(crate) struct GpuBody {
     pub(crate) environment_from_world: Mat3,
@@ -51,12 +51,12 @@ pub(crate) struct GpuBody {
     pub(crate) behind: Vec4,
 }
 
-/// For methods that know no bound.
+/// For methods without a bound.
 const UNBOUND: f32 = 1e6;
 
 impl GpuBody {
-    /// A body of particles of `radius` (world units); values that make no sense give way to safe
-    /// ones. Lights, surroundings and emission are left dark.
+    /// A body of particles of `radius` (world units); invalid values are replaced by safe ones.
+    /// Lights, surroundings and emission are left dark.
     pub(crate) fn new(
         material: &FluidMaterial,
         radius: f32,
@@ -110,7 +110,7 @@ impl GpuBody {
         }
     }
 
-    /// For a view whose metres are `view_scale` times the world's: what happens in a metre.
+    /// Converts the values per metre for a view whose metres are `view_scale` times the world's.
     pub(crate) fn scale_lengths(&mut self, view_scale: f32) {
         self.extinction /= view_scale;
         self.scattering /= view_scale;
@@ -132,16 +132,16 @@ pub enum SearchStatus {
     LeftLayer = 3,
     /// There was no valid sample to search in.
     Invalid = 4,
-    /// The ray was totally reflected at the interface that was found.
+    /// Total internal reflection at the interface that was found.
     TotalReflection = 5,
     /// The evaluations ran out before the tolerance was reached.
     Budget = 6,
-    /// An opaque surface was met first.
+    /// The ray met an opaque surface first.
     Opaque = 7,
 }
 
 impl SearchStatus {
-    /// All, in the order of their numbers.
+    /// All statuses, in the order of their numbers.
     pub const ALL: [Self; 8] = [
         Self::None,
         Self::Hit,

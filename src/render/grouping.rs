@@ -1,8 +1,8 @@
-//! Which fluids form a body.
+//! Grouping of fluids into bodies.
 //!
-//! Fluids of one material share one set of layers, which is cheap, and lets them merge. But bodies
+//! Fluids of one material share one set of layers, which is cheap and lets them merge. But bodies
 //! are painted one after the other: where a fluid of another material lies between two of them,
-//! they are painted apart.
+//! they are painted separately.
 
 use bevy::prelude::*;
 
@@ -152,7 +152,7 @@ mod tests {
     fn another_material_in_between_splits_what_does_not_touch() {
         let all = [(false, 0.0), (false, 0.8), (true, 5.0), (false, 9.0)];
         assert_eq!(sizes(&all), [(false, 2), (false, 1), (true, 1)]);
-        // In a chain that touches all along nothing can be told apart.
+        // A chain whose boxes all touch cannot be split.
         let chain = [(false, 0.0), (true, 1.5), (false, 0.9), (false, 1.8)];
         assert_eq!(sizes(&chain), [(false, 3), (true, 1)]);
     }

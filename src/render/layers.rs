@@ -29,9 +29,9 @@ pub(crate) const SLOPE_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 /// Depths of the fallback's depth-only draws.
 pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
-/// What a body's passes draw into, all of the size of the view's target.
+/// The textures that a body's passes draw into, all of the size of the view's target.
 ///
-/// Layers hold (device depth of the front, −device depth of the back); (0, −2) is nothing. A
+/// Layers hold (device depth of the front, −device depth of the back); (0, −2) means nothing. A
 /// front of exactly 1 means that the ray starts inside the liquid.
 pub struct Layers {
     /// The bulk's layers as splatted; smoothing writes to the two in turn.
@@ -47,9 +47,9 @@ pub struct Layers {
     pub(crate) radiance: CachedTexture,
     pub(crate) transmission: CachedTexture,
     pub(crate) exits: CachedTexture,
-    /// The way through all particles, where it is summed up.
+    /// The accumulated path length through all particles, if it is needed.
     pub(crate) thickness: Option<CachedTexture>,
-    /// How many splats are drawn, where that is to be seen.
+    /// The number of splats, if a debug view shows it.
     pub(crate) overdraw: Option<CachedTexture>,
     /// Front and back, for adapters that cannot blend.
     pub(crate) depths: Option<[CachedTexture; 2]>,
@@ -135,28 +135,27 @@ impl Layers {
         &self.spray_normals.texture
     }
 
-    /// What the liquid itself sends to the eye.
+    /// The liquid's own radiance: reflected, in-scattered and emitted light.
     pub fn radiance(&self) -> &Texture {
         &self.radiance.texture
     }
 
-    /// What is left of the background's light.
+    /// The transmitted fraction of the background's light.
     pub fn transmission(&self) -> &Texture {
         &self.transmission.texture
     }
 
-    /// Exit rays and flags, as `pack_exit` in `refract.wgsl` lays them out.
+    /// Exit rays and flags, in the layout of `pack_exit` in `refract.wgsl`.
     pub fn exits(&self) -> &Texture {
         &self.exits.texture
     }
 
-    /// The way through all particles in m, where it is summed up.
+    /// The accumulated path length through all particles in m, if it is summed up.
     pub fn thickness(&self) -> Option<&Texture> {
         self.thickness.as_ref().map(|cached| &cached.texture)
     }
 
-    /// How many splats are drawn at each pixel, where a camera has
-    /// [`FluidDebugView::Overdraw`].
+    /// Number of splats drawn at each pixel, if a camera has [`FluidDebugView::Overdraw`].
     pub fn overdraw(&self) -> Option<&Texture> {
         self.overdraw.as_ref().map(|cached| &cached.texture)
     }

@@ -1,4 +1,4 @@
-//! The light that a body stands in, as its uniform holds it.
+//! The light that falls on a body, for its uniform.
 
 use bevy::{
     prelude::*,
@@ -13,13 +13,13 @@ use super::{
 /// The cubemaps of a body.
 #[derive(Clone, Copy)]
 pub(crate) struct Cubemaps {
-    /// What is seen far away.
+    /// The distant surroundings.
     pub(crate) environment: Option<AssetId<Image>>,
-    /// What falls on a matte surface.
+    /// The light that falls on a matte surface.
     pub(crate) diffuse: Option<AssetId<Image>>,
 }
 
-/// What lights the bodies of a view.
+/// The light on the bodies of a view.
 pub(crate) struct Lighting<'a> {
     pub(crate) surroundings: &'a ViewSurroundings,
     pub(crate) lights: &'a FluidLights,

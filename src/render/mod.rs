@@ -1,4 +1,4 @@
-//! Splats to picture: the passes, all ahead of Bevy's main pass but the last.
+//! The render passes from splats to picture; all but the last run ahead of Bevy's main pass.
 
 mod bind_groups;
 mod bindings;
@@ -58,22 +58,22 @@ use crate::{
     settings::{FluidDebugView, ScreenSpaceFluid},
 };
 
-/// The passes of a view, in [`Core3d`], to order passes of one's own against.
+/// The passes of a view, in [`Core3d`], for ordering other passes against them.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub enum FluidPasses {
-    /// The opaque scene's nearest and farthest depths, over the samples of each pixel.
+    /// The opaque scene's nearest and farthest depths over the samples of each pixel are resolved.
     SceneDepth,
-    /// Splats to layers.
+    /// Splats are drawn into layers.
     Splat,
-    /// The way through each particle is summed up, where a material asks for it.
+    /// Path lengths through the particles are accumulated, if a material requires it.
     Thickness,
     /// The bulk's layers are smoothed.
     Smooth,
-    /// Normals that smoothing has not written.
+    /// Normals not written by smoothing are computed.
     Normals,
     /// Rays are traced through the layers.
     Refract,
-    /// The liquid is put over the opaque scene.
+    /// The liquid is composited over the opaque scene.
     Composite,
 }
 
@@ -116,7 +116,7 @@ impl Plugin for FluidRenderPlugin {
         let reports = PlanReports::default();
         app.insert_resource(reports.clone());
 
-        // What it syncs needs a renderer, if only to be despawned.
+        // Synced components need a renderer, if only to be despawned.
         if app.get_sub_app(RenderApp).is_some() {
             app.add_plugins((
                 ExtractComponentPlugin::<ScreenSpaceFluid>::default(),
@@ -181,7 +181,7 @@ impl Plugin for FluidRenderPlugin {
                         .in_set(RenderSystems::PrepareBindGroups),
                 ),
             )
-            // What makes the picture, in the order it is made.
+            // The passes, in order.
             .add_systems(
                 Core3d,
                 (

@@ -42,7 +42,8 @@ fn meet(direction: vec3<f32>, n: vec3<f32>, eta: f32) -> Interface {
     out.refracted = normalize(eta * direction + (eta * ci - ct) * n);
 #ifdef SCHLICK
     let r0 = (eta - 1.0) / (eta + 1.0);
-    // The angle on the thinner side: beyond it the approximation knows no total reflection.
+    // The angle on the thinner side: with the other angle, the approximation has no total internal
+    // reflection.
     let c = 1.0 - select(ct, ci, eta <= 1.0);
     out.reflectance = r0 * r0 + (1.0 - r0 * r0) * c * c * c * c * c;
 #else
@@ -71,7 +72,7 @@ fn highlights(direction: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
     for (var i = 0u; i < MAX_LIGHTS; i += 1u) {
         let light = body.lights[i];
         let to_light = (view.view_from_world * vec4(light.direction_to_light, 0.0)).xyz;
-        // Where there is none, all is zero.
+        // Unused lights are all zero.
         let l = to_light * inverseSqrt(max(dot(to_light, to_light), 1e-20));
         let nol = dot(n, l);
         if nol <= 0.0 {

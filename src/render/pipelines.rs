@@ -29,7 +29,7 @@ pub(crate) struct BodyPipelines {
     pub(crate) spray_normals: Option<CachedRenderPipelineId>,
     pub(crate) refract: CachedRenderPipelineId,
     pub(crate) composite: CachedRenderPipelineId,
-    /// Where light and depth are written apart.
+    /// For bodies whose light and depth are written separately.
     pub(crate) composite_depth: Option<CachedRenderPipelineId>,
 }
 
@@ -74,8 +74,8 @@ pub(crate) struct Pipelines<'w> {
 }
 
 impl Pipelines<'_> {
-    /// Both forms are asked for at once, so that none has to be waited for when the near plane
-    /// comes into a body.
+    /// Requests both forms at once, so that neither has to be waited for when the near plane enters
+    /// a body.
     fn splat(&mut self, output: SplatOutput, cut: bool) -> CachedRenderPipelineId {
         let [whole, any] = [false, true].map(|cut| {
             let key = SplatKey { output, cut };
@@ -94,7 +94,7 @@ impl Pipelines<'_> {
             .specialize(&self.cache, &self.composite, key)
     }
 
-    /// All that a body's plan asks for.
+    /// All pipelines that a body's plan requires.
     pub(crate) fn of(
         &mut self,
         plan: &Plan,
@@ -120,7 +120,7 @@ impl Pipelines<'_> {
             }
         };
         let bulk_normals = match plan.smoothing {
-            // What bends nothing needs no normals.
+            // Without refraction no normals are needed.
             _ if !plan.bulk || plan.index_one || steps.yields_normals() => BulkNormals::Smoothed,
             Smoothing::NormalAverage(average) => BulkNormals::Averaged {
                 splats: self.normals(NormalSource::Ellipsoids),

@@ -1,4 +1,4 @@
-//! Which passes a body needs in a view this frame: only what the scene has.
+//! Planning of the passes that a body needs in a view this frame.
 
 use bevy::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::{
     settings::{ScreenSpaceFluid, Smoothing},
 };
 
-/// What is known of a body in a view before anything is drawn.
+/// The properties of a body in a view that are known before anything is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanInput {
     /// Whether the body's bounding box touches the view's frustum.
@@ -21,38 +21,38 @@ pub struct PlanInput {
     pub interior: u32,
     /// Particles of the spray.
     pub spray: u32,
-    /// Of the largest particles. Unit: m, in the world.
+    /// Radius of the largest particles. Unit: m, in the world.
     pub radius: f32,
-    /// What the body is made of.
+    /// The body's material.
     pub material: FluidMaterial,
-    /// Whether work that the material makes needless is left out.
+    /// Whether to leave out work that the material makes unnecessary.
     pub shortcuts: bool,
     /// The camera's settings.
     pub settings: ScreenSpaceFluid,
 }
 
-/// What is done.
+/// The work to be done for a body in a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// The bulk's layers are drawn.
+    /// Whether the bulk's layers are drawn.
     pub bulk: bool,
-    /// The spray's layers are drawn.
+    /// Whether the spray's layers are drawn.
     pub spray: bool,
-    /// Interior particles are drawn too. They are hidden unless rays start among them.
+    /// Whether interior particles are drawn too. They are hidden unless rays start among them.
     pub interior: bool,
-    /// The near plane may cut splats, which then are met in view space.
+    /// Whether the near plane may cut splats, which are then intersected in view space.
     pub cut: bool,
     /// How the bulk is smoothed.
     pub smoothing: Smoothing,
-    /// How many interfaces a ray may cross.
+    /// Maximum number of interfaces that a ray crosses.
     pub interfaces: u32,
-    /// Light passes unbent and nothing is reflected.
+    /// Whether light passes without refraction and reflection.
     pub index_one: bool,
-    /// The way through is summed up over the particles.
+    /// Whether path lengths are accumulated over the particles.
     pub accumulated: bool,
-    /// Nothing is seen through it: there is no back, and nothing to search for.
+    /// Whether the body is opaque, so that it needs no back and no search.
     pub opaque: bool,
-    /// What there is of a medium.
+    /// The terms of the medium that are not zero.
     pub terms: MediumTerms,
 }
 
@@ -63,14 +63,14 @@ impl Plan {
     }
 }
 
-/// Which terms of a medium there are; the others are compiled out.
+/// The terms of a medium that are not zero; the others are compiled out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MediumTerms {
-    /// Light is lost on its way.
+    /// Extinction: light is absorbed or scattered away.
     pub extinction: bool,
-    /// Light from the scene is scattered to the eye.
+    /// Scattering: light from the scene is in-scattered.
     pub scattering: bool,
-    /// The medium itself shines.
+    /// Emission: the medium itself emits light.
     pub emission: bool,
 }
 
@@ -90,13 +90,13 @@ impl MediumTerms {
         }
     }
 
-    /// Whether the medium sends light of its own or of the scene.
+    /// Whether the medium adds in-scattered light or emission.
     pub fn source(&self) -> bool {
         self.scattering || self.emission
     }
 }
 
-/// What is left of light after half a particle radius of a medium that counts as opaque.
+/// Largest transmission over half a particle radius of a medium that counts as opaque.
 const OPAQUE: f32 = 1e-3;
 
 fn is_opaque(medium: &Medium, radius: f32) -> bool {
@@ -123,13 +123,14 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
         spray,
         interior,
         cut: input.near_plane_cuts,
-        // What is summed up over the particles has no surface to smooth.
+        // Accumulated thickness has no surface to smooth.
         smoothing: if bulk && !accumulated {
             input.settings.smoothing
         } else {
             Smoothing::None
         },
-        // One class has but one front and one back, but total reflection may want the rest.
+        // One class has only one front and one back, but total internal reflection may need the
+        // rest.
         interfaces: match () {
             () if index_one => 0,
             () if opaque => budget.min(1),
@@ -237,7 +238,7 @@ mod tests {
         let milk = plan(&input).unwrap();
         assert!(milk.opaque && !milk.backs());
         assert_eq!(milk.interfaces, 1);
-        // A tenth of a millimetre of milk is a film that one sees through.
+        // A tenth of a millimetre of milk is a transparent film.
         input.radius = 1e-4;
         assert!(!plan(&input).unwrap().opaque);
         // One channel that passes is enough.
@@ -270,7 +271,7 @@ mod tests {
             ..extinction
         };
         assert_eq!(terms(FluidMaterial::FIRE), emission);
-        // Matter of no colour only takes.
+        // Black matter only absorbs.
         let soot = Medium {
             scattering_density: 1.0,
             scattering_color: LinearRgba::BLACK,

@@ -1,4 +1,4 @@
-//! Textures of a view that its bodies share, and stand-ins for what a body does not have.
+//! Textures of a view that its bodies share, and placeholders for textures that a body lacks.
 
 use bevy::{
     prelude::*,
@@ -15,12 +15,12 @@ use bevy::{
 
 use super::support::LAYER_FORMAT;
 
-/// Stand-ins.
+/// Placeholders.
 #[derive(Resource)]
 pub(crate) struct Placeholders {
     /// One pixel of "nothing here".
     pub(crate) layers: CachedTexture,
-    /// Smooth lookups that stop at the border.
+    /// Linear filtering, clamped at the border.
     pub(crate) linear: Sampler,
 }
 

@@ -1,4 +1,4 @@
-//! Formulae of the shaders, run one by one on the GPU and held against f64.
+//! Formulae of the shaders, run one by one on the GPU and compared with f64.
 
 use bevy::{
     math::DVec3,
@@ -32,7 +32,7 @@ struct Formula {
 }
 
 impl Formula {
-    /// `expression` is a `vec4<f32>` of `in`, with what is imported from `path`.
+    /// `expression` is a `vec4<f32>` computed from `in` and the imports.
     fn new(imports: &str, expression: &str) -> Self {
         let source = format!(
             "#import bevy_fluid::{imports}
@@ -160,7 +160,7 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
                 let p = (eta * ct - ci) / (eta * ct + ci);
                 0.5 * (s * s + p * p)
             };
-            // f32 tells 1 − sin² to 1e-7, and it is the root of it that counts: 3e-4, times the
+            // f32 resolves 1 − sin² to 1e-7, and the result depends on its root: 3e-4, times the
             // index squared over the cosine.
             let error = (f64::from(*reflectance) - wanted).abs();
             let allowed = 2e-6 + 4.0 * (3e-7 * eta * eta).sqrt() * eta / ci.max(1e-3);
@@ -195,7 +195,7 @@ fn h34_h50_the_medium_equals_f64_on_the_gpu() {
         };
         for ([d, ..], left) in inputs.iter().zip(formula.run(body, &inputs)) {
             for (b, left) in extinction.iter().zip(left) {
-                // The path is cut at 1e30 m: 0 · ∞ is no number.
+                // The path is clamped to 1e30 m: 0 · ∞ is NaN.
                 let exact = (-f64::from(*b) * f64::from(*d).min(1e30)).exp();
                 let error = (f64::from(left) - exact).abs();
                 assert!(error < 1e-6, "B = {b}, d = {d}: {left}, not {exact}");

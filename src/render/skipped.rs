@@ -1,4 +1,4 @@
-//! What a plan leaves out, and why, in words; and how the main world hears of it.
+//! Reports of the work that plans leave out, for the main world.
 
 use std::sync::{
     Arc, Mutex, MutexGuard, PoisonError,
@@ -10,16 +10,16 @@ use bevy::{ecs::system::SystemParam, prelude::*, render::sync_world::MainEntity}
 use super::plan::{PlanInput, plan};
 use crate::{material::FluidMaterial, settings::Smoothing};
 
-/// Work that was not done for a body.
+/// Work that was skipped for a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Skipped {
-    /// What was not done, such as "search".
+    /// The skipped work, such as "search".
     pub work: &'static str,
-    /// Why it was needless, such as "nothing is seen through it".
+    /// The reason, such as "nothing is seen through it".
     pub why: &'static str,
 }
 
-/// All that [`plan`] leaves out for a body in a view, in the order of the passes.
+/// All work that [`plan`] leaves out for a body in a view, in the order of the passes.
 pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
     let Some(plan) = plan(input) else {
         let why = if input.in_view {
@@ -95,30 +95,32 @@ pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
     .collect()
 }
 
-/// What was planned for a body in a view.
+/// The plan for a body in a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
-    /// What it is made of.
+    /// The body's material.
     pub material: FluidMaterial,
-    /// The fluids that it consists of.
+    /// The fluids that form the body.
     pub fluids: Vec<Entity>,
-    /// What was not done.
+    /// The skipped work.
     pub skipped: Vec<Skipped>,
-    /// The part of the view's pixels that its passes are confined to, 0..=1.
+    /// The fraction of the view's pixels that its passes are confined to, 0..=1.
     pub covered: f32,
 }
 
-/// What was planned for a camera's bodies, from far to near.
+/// The plans for a camera's bodies, from far to near.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewReport {
     /// The camera in the main world.
     pub camera: Entity,
-    /// From far to near; those that nothing is done for as well.
+    /// From far to near, including bodies that are skipped entirely.
     pub bodies: Vec<BodyReport>,
 }
 
-/// A letter box between the worlds: whoever asks finds a report there a frame or two later.
-/// Nothing is reported unasked. Inserted by [`FluidPlugin`](crate::FluidPlugin).
+/// Reports of plans from the render world, on request.
+///
+/// A report is available a frame or two after [`PlanReports::ask`]; without a request none is made.
+/// Inserted by [`FluidPlugin`](crate::FluidPlugin).
 #[derive(Resource, Clone, Debug, Default)]
 pub struct PlanReports(Arc<LetterBox>);
 
@@ -129,12 +131,12 @@ struct LetterBox {
 }
 
 impl PlanReports {
-    /// Asks for a report of the next frame.
+    /// Requests a report of the next frame.
     pub fn ask(&self) {
         self.0.asked.store(true, Ordering::Relaxed);
     }
 
-    /// The latest report. Empty where none was asked for.
+    /// The latest report; empty if none was requested.
     pub fn latest(&self) -> Vec<ViewReport> {
         self.views().clone()
     }
@@ -143,7 +145,7 @@ impl PlanReports {
         self.0.views.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A new report, if one was asked for.
+    /// A new report, if one was requested.
     fn begin(&self) -> Option<Vec<ViewReport>> {
         self.0.asked.swap(false, Ordering::Relaxed).then(Vec::new)
     }
@@ -163,7 +165,7 @@ pub(crate) struct Reporter<'w, 's> {
 }
 
 impl Reporter<'_, '_> {
-    /// A new report, if one was asked for.
+    /// A new report, if one was requested.
     pub(crate) fn begin(&self) -> Option<Vec<ViewReport>> {
         self.reports.begin()
     }
@@ -172,7 +174,7 @@ impl Reporter<'_, '_> {
         self.reports.end(report);
     }
 
-    /// About fluids of the render world that form a body.
+    /// The report about a body formed by fluids of the render world.
     pub(crate) fn body(
         &self,
         input: &PlanInput,

@@ -1,4 +1,4 @@
-// The straight way of a pixel's ray through the liquid.
+// The straight path of a pixel's ray through the liquid.
 #define_import_path bevy_fluid::render::straight
 
 #import bevy_fluid::render::functions::{

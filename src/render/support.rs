@@ -1,4 +1,4 @@
-//! What the adapter can do, asked once.
+//! The adapter's capabilities, queried once.
 
 use bevy::{
     prelude::*,
@@ -16,7 +16,7 @@ pub(crate) const LAYER_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum LayerBlending {
-    /// `MaxBlend` where the adapter can, else `DepthDraws`.
+    /// `MaxBlend` if the adapter supports it, else `DepthDraws`.
     #[default]
     Auto,
     /// One draw per class; a `max` blend of 32-bit floats keeps both depths.
@@ -25,21 +25,21 @@ pub enum LayerBlending {
     DepthDraws,
 }
 
-/// What was found, and what is done about it.
+/// The capabilities and the methods chosen for them.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(crate) struct FluidSupport {
-    /// Fluids can be drawn at all.
+    /// Whether fluids can be drawn at all.
     pub(crate) drawing: bool,
     pub(crate) max_blend: bool,
-    /// What sums over particles are kept in.
+    /// Format of sums over particles.
     pub(crate) thickness_format: TextureFormat,
 }
 
-/// The wish of [`FluidPlugin`](crate::FluidPlugin), in the render world.
+/// The setting of [`FluidPlugin`](crate::FluidPlugin), in the render world.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(crate) struct WantedBlending(pub(crate) LayerBlending);
 
-/// Whether the plan may leave work out, likewise.
+/// Whether plans may leave out unnecessary work, in the render world.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(crate) struct Shortcuts(pub(crate) bool);
 
@@ -58,7 +58,7 @@ pub(crate) fn init_support(
             info.name
         );
     }
-    // OpenGL claims it without looking.
+    // OpenGL reports it without checking.
     let trusted = format!("{:?}", info.backend) != "Gl";
     let can_blend_in = |format| {
         let own = adapter.get_texture_format_features(format).flags;
@@ -90,7 +90,8 @@ fn can_draw(limits: &WgpuLimits, layers: TextureUsages) -> bool {
         && layers.contains(TextureUsages::RENDER_ATTACHMENT)
 }
 
-/// By either of two features: one is for this alone, the other lets an adapter do what it can.
+/// Either of two features is enough: one is for this alone, the other enables an adapter's own
+/// format features.
 fn can_blend(features: WgpuFeatures, layers: TextureFormatFeatureFlags) -> bool {
     features.contains(WgpuFeatures::FLOAT32_BLENDABLE)
         || (features.contains(WgpuFeatures::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
@@ -131,7 +132,7 @@ mod tests {
         assert!(!can_blend(WgpuFeatures::empty(), blendable));
     }
 
-    /// A scene on a device that cannot draw fluids: as if there were none.
+    /// A scene on a device that cannot draw fluids looks as if there were none.
     #[test]
     fn without_support_nothing_is_drawn_and_nothing_goes_wrong() {
         let mut pictures = [true, false].map(|fluids| {
@@ -151,7 +152,7 @@ mod tests {
             settle(&mut app).unwrap();
             let views = app.sub_app(RenderApp).world().iter_entities();
             assert_eq!(views.filter(EntityRef::contains::<ViewBodies>).count(), 0);
-            // Fails if the GPU's validation has complained.
+            // Fails if the GPU's validation has reported an error.
             capture(&mut app).unwrap()
         });
         let [with, without] = &mut pictures;

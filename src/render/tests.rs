@@ -1,4 +1,4 @@
-//! Every shader variant that a setting can ask for composes, validates and makes a pipeline.
+//! Every shader variant that a setting can require composes, validates and makes a pipeline.
 
 use bevy::{
     prelude::*,
@@ -38,13 +38,13 @@ fn pairs<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
         .collect()
 }
 
-/// Has the app's render world ask for pipelines, and all of them made.
+/// Requests pipelines in an app's render world and asserts that all of them are made.
 fn assert_made(ask: impl FnOnce(&World) -> Vec<CachedRenderPipelineId>) {
     let mut app = headless_app(UVec2::splat(16), |app| {
         app.add_plugins(FluidPlugin::default());
     })
     .unwrap();
-    // What is made without being asked for, as the merge of two depths.
+    // Pipelines made without a request, such as the merge of two depths.
     settle(&mut app).unwrap();
     let ids = ask(app.sub_app(RenderApp).world());
     // An error here names the pipeline and what is wrong with it.
@@ -233,7 +233,7 @@ fn a_medium_without_terms_costs_nothing() {
         RefractKey::new(&plan, &input.settings)
     };
     assert_eq!(key(FluidMaterial::CLEAR_WATER), TRACED);
-    // What the shader is told of it is what it was told before it knew of media.
+    // The shader's definitions are the same as before media were introduced.
     let defs: [ShaderDefVal; 4] = [
         "BULK_LAYERS".into(),
         "SPRAY_LAYERS".into(),

@@ -1,12 +1,12 @@
-// Rays as the screen sees them.
+// Rays on screen.
 #define_import_path bevy_fluid::render::track
 
 #import bevy_fluid::render::bindings::{body, view}
 #import bevy_fluid::render::functions::{DepthMap, depth_map, depth_slope, pixel_from_ndc}
 
-// Where a ray is on screen and in device depth is affine in s = t / w: t is the distance along the
-// ray, w the clip coordinate there. Over a plane the layers' device depth is affine as well, so the
-// gap between a ray and a plane is linear in s for every projection.
+// A ray's position on screen and in device depth is affine in s = t / w: t is the distance along
+// the ray, w the clip coordinate there. Over a plane the layers' device depth is affine as well, so
+// the gap between a ray and a plane is linear in s for every projection.
 struct Track {
     // Device coordinates of the start, and their change with s.
     start: vec3<f32>,

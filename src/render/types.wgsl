@@ -9,7 +9,7 @@ struct Splat {
     particle: u32,
 }
 
-// Where a fluid stands.
+// Transform and particle radius of a fluid.
 struct GpuFluid {
     world_from_local: mat4x4<f32>,
     // Particle radius in the fluid's space.
@@ -23,11 +23,11 @@ struct GpuDirectionalLight {
     illuminance: vec3<f32>,
 }
 
-// What a body looks like in a view.
+// Appearance of a body in a view.
 struct GpuBody {
     // World to cubemap, handedness included.
     environment_from_world: mat3x3<f32>,
-    // What is seen where there is no environment map.
+    // Background without an environment map.
     clear_color: vec3<f32>,
     // Turns texels of the environment map into the view's units; 0: there is none.
     environment_intensity: f32,
@@ -53,7 +53,7 @@ struct GpuBody {
     contact: f32,
     // Medium: scattering colour times density, 1/m.
     scattering: vec3<f32>,
-    // Medium: what a metre sends, exposed.
+    // Medium: emission per metre, exposed.
     emission: vec3<f32>,
     // Mean over all directions of the light from lights and ambient, exposed.
     even_light: vec3<f32>,
@@ -65,8 +65,8 @@ struct GpuBody {
     behind: vec4<f32>,
 }
 
-// Depth layers hold (device depth of the front, −device depth of the back), so that one `max`
-// blend serves both. These stand for "nothing here".
+// Depth layers hold (device depth of the front, −device depth of the back), so that one `max` blend
+// serves both. These mean "nothing here".
 const NO_FRONT: f32 = 0.0;
 const NO_BACK: f32 = -2.0;
 // A front at the near plane: the ray starts inside the liquid.

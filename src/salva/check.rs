@@ -1,4 +1,4 @@
-//! Settings that make no sense: what is said of them, and what is simulated.
+//! Invalid settings: how they are logged and clamped.
 
 use bevy::prelude::*;
 use thiserror::Error;
@@ -9,7 +9,7 @@ use crate::{complaints::AboutField, limits::Limited};
 const MAX_SUBSTEPS: u32 = 16;
 const MAX_STEPS: u32 = 64;
 
-/// Why something is not simulated as it is set.
+/// Why a component is not simulated as it is set.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SalvaError {
@@ -25,7 +25,7 @@ pub enum SalvaError {
         /// Largest value allowed.
         max: f32,
     },
-    /// A velocity that is not a number.
+    /// A vector is not finite.
     #[error("`{field}` is {value}; it must be finite")]
     Vector {
         /// Component and field.
@@ -33,10 +33,10 @@ pub enum SalvaError {
         /// Its value.
         value: Vec3,
     },
-    /// The radius of a fluid's particles.
+    /// The radius of a fluid's particles is not finite and positive.
     #[error("`FluidParticles::radius` is {0}; it must be finite and above 0")]
     Radius(f32),
-    /// One world has particles of one size.
+    /// The radius differs from that of the other fluids.
     #[error("its particles' radius is {own}, but that of all simulated fluids is {others}")]
     OtherRadius {
         /// Radius in the world's space, m.
@@ -44,22 +44,21 @@ pub enum SalvaError {
         /// Radius of the fluid that came first, m.
         others: f32,
     },
-    /// There is no `Mesh3d`, or no triangles in it that the main world has, or a body's enclose
-    /// nothing.
+    /// There is no `Mesh3d` with triangles in the main world, or a body's hull has no volume.
     #[error(
         "there is no `Mesh3d` with triangles in the main world, or a body's hull has no volume"
     )]
     Mesh,
-    /// A size that is none.
+    /// A size is not finite and positive.
     #[error("`SalvaShape` {0:?} (scaled) is none: sizes must be finite and above 0")]
     Shape(SalvaShape),
-    /// A body that would be hollow or endless.
+    /// A body's shape is hollow or endless.
     #[error("a body cannot be a `SalvaShape::Tank` or a `Plane`")]
     BodyShape,
-    /// A transform that is not a number.
+    /// The transform is not finite.
     #[error("its transform is not finite")]
     Transform,
-    /// A surface of more particles than can be simulated.
+    /// A surface needs more particles than can be simulated.
     #[error("its surface is too large for particles of this radius: liquid sees only its shell")]
     Surface,
 }
@@ -126,7 +125,7 @@ impl SalvaFluid {
         finite("SalvaFluid::velocity", self.velocity)
     }
 
-    /// The nearest fluid that makes sense; what is not a number gives way to the default.
+    /// This fluid, clamped to its ranges. Values that are not a number are replaced by the default.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
         own.fields().iter_mut().for_each(Limited::clamp);
@@ -153,7 +152,8 @@ impl SalvaBoundary {
         own.fields().iter().try_for_each(SalvaError::check)
     }
 
-    /// The nearest boundary that makes sense; what is not a number gives way to the default.
+    /// This boundary, clamped to its ranges. Values that are not a number are replaced by the
+    /// default.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
         own.fields().iter_mut().for_each(Limited::clamp);
@@ -185,8 +185,8 @@ impl SalvaBody {
         finite("SalvaBody::angular_velocity", self.angular_velocity)
     }
 
-    /// The nearest body that makes sense; what is not a number gives way to the default. The
-    /// shape stays as it is.
+    /// This body, clamped to its ranges. Values that are not a number are replaced by the default.
+    /// The shape stays as it is.
     pub fn clamped(&self) -> Self {
         let mut own = *self;
         own.fields().iter_mut().for_each(Limited::clamp);
@@ -229,7 +229,8 @@ impl SalvaSettings {
         finite("SalvaSettings::high", self.high)
     }
 
-    /// The nearest settings that make sense; what is not a number gives way to the default.
+    /// These settings, clamped to their ranges. Values that are not a number are replaced by the
+    /// default.
     pub fn clamped(&self) -> Self {
         let default = Self::default();
         let finite = |value: Vec3, default: Vec3| if value.is_finite() { value } else { default };

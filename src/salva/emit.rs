@@ -9,7 +9,7 @@ use super::{
 };
 use crate::emitter::{Emission, ParticleEmitter, step};
 
-/// Tells of newborn particles, and of which are to stay.
+/// Sends new particles to the simulation, and the limits of those that stay.
 pub(crate) fn emit(
     mut simulation: ResMut<Simulation>,
     settings: Res<SalvaSettings>,

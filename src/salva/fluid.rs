@@ -1,22 +1,24 @@
-//! What stands on a fluid to be simulated.
+//! The component of a simulated fluid.
 
 use bevy::prelude::*;
 
 use crate::{emitter::ExternalMotion, particles::FluidParticles, range::SettingRange};
 
-/// A fluid that salva moves.
+/// A fluid simulated by salva.
 ///
-/// The positions of the [`FluidParticles`] beside it are where it starts; from then on they are
-/// overwritten. Particles within a solid (that is no mesh) are taken out at the start. To start
-/// anew, write positions yourself: they are taken over, at [`velocity`](Self::velocity). Neighbours
-/// at rest are two radii apart: fill with a lattice of that spacing, one radius off the walls.
+/// The simulation starts with the positions of the [`FluidParticles`] on its entity, and overwrites
+/// them from then on. Particles within a solid (other than a mesh) are removed at the start. To
+/// restart, write positions yourself: the simulation continues with them, at
+/// [`velocity`](Self::velocity). Neighbours at rest are two radii apart: fill with a lattice of
+/// that spacing, one radius off the walls.
 ///
-/// All fluids have one radius in the world, that of the first; another is said once in the log, and
-/// stays where it is. Fluids of different [`density`](Self::density) press on each other and part.
+/// All fluids have one radius in world space, that of the first; a fluid with another radius is
+/// logged once and not simulated. Fluids of different [`density`](Self::density) press on each
+/// other and separate.
 ///
-/// A [`ParticleEmitter`](crate::ParticleEmitter) beside it lets particles into the simulation, no
-/// more than fit beside each other; its lifetime, capacity and bounds hold, its gravity and drag do
-/// not.
+/// A [`ParticleEmitter`](crate::ParticleEmitter) on its entity emits particles into the simulation,
+/// no more than fit beside each other; its lifetime, capacity and bounds apply, its gravity and
+/// drag do not.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -37,32 +39,31 @@ use crate::{emitter::ExternalMotion, particles::FluidParticles, range::SettingRa
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, ExternalMotion)]
 pub struct SalvaFluid {
-    /// Density at rest. Unit: kg/m³, range 1..=100000, default 1000. Against it bodies float or
-    /// sink.
+    /// Density at rest. Unit: kg/m³, range 1..=100000, default 1000. Lighter bodies float, heavier
+    /// ones sink.
     #[reflect(@SettingRange::new(1.0, 1e5).unit("kg/m³").logarithmic())]
     pub density: f32,
     /// Kinematic viscosity. Unit: m²/s, range 0..=10, default 0.01. That is honey's; water's own
-    /// (1e-6) is far below what particles of some centimetres resolve, and less than about 0.005
-    /// only lets them rattle. Above about 0.08 radius² / step (0.06 for 2.5 cm at the default step)
-    /// it has no further effect.
+    /// (1e-6) is far below what particles of some centimetres resolve, and below about 0.005 they
+    /// only jitter. Above about 0.08 radius² / step (0.06 for 2.5 cm at the default step) it has no
+    /// further effect.
     #[reflect(@SettingRange::new(0.0, 10.0).unit("m²/s").logarithmic())]
     pub viscosity: f32,
-    /// The same between the fluid and solids: how much they hold it back, or drag it along.
-    /// Unit: m²/s, range 0..=10, default 0.002. 0: it slips.
+    /// Kinematic viscosity between the fluid and solids, which hold it back or drag it along. Unit:
+    /// m²/s, range 0..=10, default 0.002. 0: it slips.
     #[reflect(@SettingRange::new(0.0, 10.0).unit("m²/s").logarithmic())]
     pub wall_viscosity: f32,
-    /// Share of its velocity that each particle loses to the air. Unit: 1/s, range 0..=1000,
-    /// default 0.
+    /// Air drag: rate at which particles lose velocity. Unit: 1/s, range 0..=1000, default 0.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("1/s").logarithmic())]
     pub drag: f32,
-    /// How much the surface contracts: γ of Akinci et al. 2013. Range 0..=10, default 0; about 1
-    /// for drops of water. It costs a third more time.
+    /// Surface tension: γ of Akinci et al. 2013. Range 0..=10, default 0; about 1 for drops of
+    /// water. It costs a third more time.
     #[reflect(@SettingRange::new(0.0, 10.0))]
     pub surface_tension: f32,
-    /// How much it clings to solids: β of Akinci et al. 2013. Range 0..=10, default 0.
+    /// Adhesion to solids: β of Akinci et al. 2013. Range 0..=10, default 0.
     #[reflect(@SettingRange::new(0.0, 10.0))]
     pub adhesion: f32,
-    /// What it starts with, in the world's space. Unit: m/s, default 0.
+    /// Initial velocity, in world space. Unit: m/s, default 0.
     #[reflect(@SettingRange::new(-100.0, 100.0).unit("m/s").open())]
     pub velocity: Vec3,
 }
@@ -79,7 +80,7 @@ impl SalvaFluid {
         velocity: Vec3::ZERO,
     };
 
-    /// Honey: heavy, slow, and it clings.
+    /// Honey: heavy, viscous and adhesive.
     pub const HONEY: Self = Self {
         density: 1420.0,
         viscosity: 0.05,

@@ -1,5 +1,5 @@
-//! Live liquids: [salva3d](https://docs.rs/salva3d) moves the particles, rapier the bodies among
-//! them. Feature `salva`.
+//! Live simulation of liquids: [salva3d](https://docs.rs/salva3d) moves the particles, rapier the
+//! bodies among them. Feature `salva`.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -36,36 +36,38 @@
 //! # What happens in a frame
 //!
 //! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
-//! gathered, the next steps begin on other threads, and positions between the last two finished
-//! states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies' `Transform`.
-//! Nobody waits, not for the hulls and trees of meshes either: what is shown lags a frame and a step
-//! behind, and where the machine is too slow the liquid moves in slow motion
-//! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] says how much of a
-//! frame's time it may take; [`SalvaMode::Lockstep`] waits, and repeats itself bit for bit.
+//! gathered, the next steps begin on other threads, and positions interpolated between the last two
+//! finished states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies'
+//! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
+//! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
+//! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] limits how much of a
+//! frame's time the simulation takes; [`SalvaMode::Lockstep`] waits, and is deterministic, bit for
+//! bit.
 //!
 //! # What is simulated
 //!
-//! IISPH (Ihmsen et al. 2014) with salva's pressure solver, in substeps as the fastest particle asks
-//! for. At rest liquid takes 2 to 5 % less room than it should: particles lie up to 0.2 radii nearer to
-//! walls, so the finer, the less. Solids are sampled by particles where liquid is near (Akinci et
-//! al. 2012); a ray along each particle's way through a step sees to it that none passes a surface.
-//! Momentum is kept to the bit that floats allow: what a solid stops, pushes it.
+//! IISPH (Ihmsen et al. 2014) with salva's pressure solver, in as many substeps as the fastest
+//! particle needs. At rest liquid takes 2 to 5 % less room than it should: particles lie up to 0.2
+//! radii nearer to walls, so finer particles lose less. Solids are sampled by particles near liquid
+//! (Akinci et al. 2012); a ray along each particle's path through a step ensures that none passes a
+//! surface. Momentum is conserved to float precision: a particle that a solid stops pushes the
+//! solid.
 //!
 //! # Cost
 //!
-//! On one core of a shared server 6 µs a particle and step (2000 particles 11.6 ms, 6750 41 ms), 10 µs
-//! beyond the cache (16,000 159 ms, 54,000 521 ms), in the first half second of a dam break in a tank
-//! twice as wide, boundary particles near liquid included: `cargo test --release --workspace
-//! --all-features --test salva -- --ignored --nocapture cost` measures it. Some 10,000 particles are
-//! what a desktop of many cores does live.
+//! On one core of a shared server a step takes 6 µs per particle (2000 particles 11.6 ms, 6750 41
+//! ms), 10 µs beyond the cache (16,000 159 ms, 54,000 521 ms), in the first half second of a dam
+//! break in a tank twice as wide, boundary particles near liquid included: `cargo test --release
+//! --workspace --all-features --test salva -- --ignored --nocapture cost` measures it. A desktop
+//! with many cores simulates some 10,000 particles live.
 //!
-//! # What it cannot do
+//! # Limitations
 //!
-//! - One radius for all fluids. Thin sheets and fine spray are as coarse as it.
+//! - All fluids have one particle radius. Thin sheets and fine spray are no finer.
 //! - Bodies of a rapier world outside of this plugin are not coupled; see [`SalvaLoad`].
 //! - Impacts: water that hits at 40 m/s gains energy (half as much again, measured on a block and a
 //!   body of particles of 5 cm); at 20 m/s it does not.
-//! - Threads: not on the web.
+//! - Threads: it does not run on the web.
 
 mod check;
 mod emit;
@@ -92,12 +94,12 @@ pub use self::{
 
 use crate::schedule::FluidSystems;
 
-/// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s. It stands beside
-/// [`FluidPlugin`](crate::FluidPlugin), which draws; without that it simulates all the same.
+/// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
+/// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SalvaPlugin;
 
-/// The systems of [`SalvaPlugin`], in [`PostUpdate`] ahead of the propagation of transforms: what is
+/// The systems of [`SalvaPlugin`], in [`PostUpdate`] before transforms are propagated: anything
 /// moved or spawned before them takes part in the steps they begin.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub struct SalvaSystems;

@@ -1,4 +1,4 @@
-//! Who has the simulated world: the app between jobs, another thread during one.
+//! Ownership of the simulated world: the app between jobs, another thread during one.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -31,19 +31,19 @@ pub(crate) struct Simulation {
     /// None while a job has it.
     world: Option<Box<World>>,
     task: Option<Task<Finished>>,
-    /// What the world is told before its next job.
+    /// Commands for the world before its next job.
     pub(crate) commands: Vec<Command>,
-    /// Commands ever given.
+    /// Number of commands ever given.
     pub(crate) told: u64,
-    /// Of them, those that jobs have been given.
+    /// Number of those passed to jobs.
     pub(crate) sent: u64,
-    /// Whether salva has panicked: nobody is there to be told anything.
+    /// Whether salva has panicked: commands are then dropped.
     is_over: bool,
     /// The last two finished states, and one to be filled.
     pub(crate) from: Frame,
     pub(crate) to: Frame,
     spare: Frame,
-    /// Solids whose surfaces take too many particles: to be complained about.
+    /// Solids whose surfaces take too many particles, to be logged.
     pub(crate) unsampled: Vec<u64>,
     pub(crate) pace: Pace,
     planned: f64,
@@ -52,13 +52,13 @@ pub(crate) struct Simulation {
     pub(crate) solids: EntityHashMap<SolidEntry>,
     many_threads: Option<Arc<ThreadPool>>,
     one_thread: Option<Arc<ThreadPool>>,
-    /// Called at the begin of every job, by tests.
+    /// Called at the beginning of every job, by tests.
     #[cfg(test)]
     pub(crate) before_job: Option<Arc<dyn Fn() + Send + Sync>>,
 }
 
 impl Simulation {
-    /// Tells the world something, and returns how many things it has been told with this one.
+    /// Gives the world a command, and returns the number of commands given, this one included.
     pub(crate) fn tell(&mut self, command: Command) -> u64 {
         if !self.is_over {
             command.join(&mut self.commands);
@@ -187,7 +187,7 @@ pub(crate) fn collect(
     }
 }
 
-/// Begins a job if one is due, and moves what is shown on.
+/// Begins a job if one is due, and advances the time shown.
 pub(crate) fn advance(
     mut simulation: ResMut<Simulation>,
     settings: Res<SalvaSettings>,
@@ -251,7 +251,7 @@ impl Simulation {
         self.shown = moved.clamp(self.from.time, self.to.time);
     }
 
-    /// How far what is shown is on its way from the last state but one to the last, 0..1.
+    /// The interpolation factor of the state shown, from the last state but one to the last, 0..1.
     pub(crate) fn share(&self) -> f32 {
         let whole = self.to.time - self.from.time;
         if whole > 0.0 {

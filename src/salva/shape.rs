@@ -1,4 +1,4 @@
-//! From components and meshes to what the simulation takes.
+//! From components and meshes to the simulation's geometry.
 
 use bevy::{
     mesh::{Indices, PrimitiveTopology},
@@ -21,7 +21,7 @@ pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Mat3), S
     Ok((Isometry3d::new(translation, rotation), scale))
 }
 
-/// What the shape of a boundary, or of a body, is to be made of.
+/// The recipe for the shape of a boundary or of a body.
 pub(crate) fn recipe(
     shape: SalvaShape,
     scale: Mat3,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::particles::FluidParticles;
 
-/// What was shown last: the same is not written again.
+/// The state shown last, which is not written again.
 #[derive(Default, PartialEq, Clone, Copy)]
 pub(crate) struct Shown {
     from: f64,
@@ -27,7 +27,7 @@ impl Shown {
         }
     }
 
-    /// Whether there is something else to show than before.
+    /// Whether the state to show has changed.
     fn update(&mut self, simulation: &Simulation) -> bool {
         let now = Self::of(simulation);
         core::mem::replace(self, now) != now
@@ -54,7 +54,7 @@ pub(crate) fn show_fluids(
             continue;
         };
         let id = entity.to_bits();
-        // The state may be of before its particles were replaced.
+        // The state may date from before its particles were replaced.
         let Some(end) = to.liquid(id).filter(|_| to.applied >= entry.told) else {
             continue;
         };
@@ -105,14 +105,14 @@ pub(crate) fn show_bodies(
         let start = place(from).unwrap_or(end);
         transform.translation = start.translation.lerp(end.translation, share).into();
         transform.rotation = start.rotation.slerp(end.rotation, share);
-        // As it will be read from the transform, to notice when somebody else writes it.
+        // As it will be read from the transform, to detect writes by other code.
         if let Ok((at, _)) = split(&GlobalTransform::from(*transform)) {
             entry.at = at;
         }
     }
 }
 
-/// Writes the forces on solids that want them.
+/// Writes the forces on solids that have a [`SalvaLoad`].
 pub(crate) fn show_loads(simulation: Res<Simulation>, mut loads: Query<&mut SalvaLoad>) {
     for &(id, force, torque) in &simulation.to.loads {
         if let Ok(mut load) = loads.get_mut(Entity::from_bits(id)) {

@@ -1,4 +1,4 @@
-//! What needs a look inside: that nobody waits, and what is shown meanwhile.
+//! Tests of the internals: that the app never waits, and what is shown meanwhile.
 
 use std::{
     sync::{Arc, Mutex, mpsc},
@@ -259,7 +259,7 @@ fn nothing_piles_up_when_salva_has_panicked() {
         wall.translation.y -= 0.01;
         app.update();
     };
-    // A panic takes its time to be told of.
+    // A panic takes its time to be reported.
     for _ in 0..10_000 {
         fall(&mut app);
         if status(&app).stopped {

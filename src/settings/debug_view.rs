@@ -1,4 +1,4 @@
-//! What can be looked at in place of the liquid.
+//! Debug views: intermediate results shown in place of the liquid.
 
 use bevy::prelude::*;
 
@@ -17,27 +17,27 @@ pub enum FluidDebugView {
     SprayBack,
     /// The first interface's normal in view space, −1..=1 shown as 0..=1.
     Normals,
-    /// How many interfaces each ray met: 0 black, 1 blue, 2 green, 3 yellow, 4 red.
+    /// Number of interfaces that each ray met: 0 black, 1 blue, 2 green, 3 yellow, 4 red.
     Interfaces,
-    /// How the searches ended: green all hit, blue no further interface, yellow the ray left the
-    /// layer or the screen, red nothing to search in, violet total reflection, orange the
-    /// evaluations ran out, grey an opaque surface was met.
+    /// How the searches ended. Green: all hit; blue: no further interface; yellow: the ray left the
+    /// layer or the screen; red: nothing to search in; violet: total internal reflection; orange:
+    /// out of evaluations; grey: met an opaque surface.
     Status,
-    /// Bulk blue, spray orange.
+    /// Class of the first surface: bulk blue, spray orange.
     Classes,
-    /// The straight way through the liquid at each pixel: black 0, white as far as the body's box
-    /// is deep, and where nothing is seen through it.
+    /// Straight path length through the liquid at each pixel. Black: 0; white: the depth of the
+    /// body's bounding box, or opaque.
     Thickness,
-    /// Where each ray goes in the end: its direction in view space, −1..=1 shown as 0..=1, half as
-    /// bright where it ends at an opaque surface or goes straight on.
+    /// Final direction of each ray in view space, −1..=1 shown as 0..=1; half as bright where the
+    /// ray ends at an opaque surface or goes straight on.
     ExitRay,
-    /// How many splats are drawn at each pixel: violet 1, red 4, orange 16, white 64 and more.
-    /// It takes a pass of its own.
+    /// Number of splats drawn at each pixel: violet 1, red 4, orange 16, white 64 and more. Needs a
+    /// pass of its own.
     Overdraw,
 }
 
 impl FluidDebugView {
-    /// All of them.
+    /// All debug views.
     pub const ALL: [Self; 11] = [
         Self::BulkFront,
         Self::BulkBack,

@@ -17,10 +17,11 @@ use crate::range::SettingRange;
 
 /// Makes a camera draw particle fluids.
 ///
-/// The presets are points on the measured front of speed against error (bench `speed_error`): the
-/// default stands at its knee, [`ScreenSpaceFluid::FAST`] and [`ScreenSpaceFluid::ACCURATE`] to
-/// either side. Their docs give times relative to the default, at 320×240 on a software driver, and
-/// FLIP against a traced picture of a ball and of a half-filled box.
+/// The presets are points on the measured Pareto front of speed against error (bench
+/// `speed_error`): the default is at its knee, [`ScreenSpaceFluid::FAST`] and
+/// [`ScreenSpaceFluid::ACCURATE`] on either side. Their docs give times relative to the default, at
+/// 320×240 on a software driver, and the FLIP error against ray-traced pictures of a ball and of a
+/// half-filled box.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(DepthPrepass, Hdr)]
@@ -28,17 +29,17 @@ pub struct ScreenSpaceFluid {
     /// How the bumps of single particles are removed from the bulk. Default:
     /// [`PlaneFit::DEFAULT`].
     pub smoothing: Smoothing,
-    /// How many interfaces a ray may cross. Default: four. More: liquid behind liquid, and total
-    /// reflection inside, look right; each costs a search.
+    /// Maximum number of interfaces that a ray crosses. Default: four. More: liquid behind liquid
+    /// and total internal reflection look right; each interface costs a search.
     pub refractions: Refractions,
     /// How the next interface is found. Default: [`Search::BRACKETED`].
     pub search: Search,
-    /// How much light an interface reflects. Default: exact.
+    /// How the Fresnel reflectance of an interface is computed. Default: exact.
     pub fresnel: Fresnel,
-    /// How far behind the liquid an opaque surface still counts as wetted, so that a ray goes
-    /// straight on to it and no layer of air is seen between. Unit: particle radii, range 0..=8,
-    /// default 1: what simulations leave between particles and walls. Higher: thin gaps of air
-    /// vanish. 0: liquid and solids never touch.
+    /// Largest gap between the liquid and an opaque surface behind it at which the surface counts
+    /// as wetted: rays go straight on to it, without a visible layer of air. Unit: particle radii,
+    /// range 0..=8, default 1, the gap that simulations leave between particles and walls. Higher:
+    /// thin gaps of air vanish. 0: liquid and solids never touch.
     #[reflect(@SettingRange::new(0.0, 8.0).unit("radii"))]
     pub contact: f32,
 }
@@ -51,14 +52,14 @@ impl ScreenSpaceFluid {
         ..Self::DEFAULT
     };
 
-    /// As near to the truth as the method gets: searched in eight steps first.
-    /// Time 1.06 of the default's; FLIP 0.53 (box) and 0.23 (ball).
+    /// The most accurate settings of the method: the search starts with eight coarse samples. Time
+    /// 1.06 of the default's; FLIP 0.53 (box) and 0.23 (ball).
     pub const ACCURATE: Self = Self {
         search: Search::Bracketed { coarse_samples: 8 },
         ..Self::DEFAULT
     };
 
-    /// The default: FLIP 0.53 (box) and 0.24 (ball), normals off by 1.0° in the median.
+    /// The default: FLIP 0.53 (box) and 0.24 (ball), median error of normals 1.0°.
     pub const DEFAULT: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::DEFAULT),
         refractions: Refractions::Four,
@@ -67,9 +68,9 @@ impl ScreenSpaceFluid {
         contact: 1.0,
     };
 
-    /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick.
-    /// Beside it belongs [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and
-    /// 2.1 (ball) of the default's; FLIP 0.56 and 0.43.
+    /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick. Use
+    /// it with [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
+    /// (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
         refractions: Refractions::Four,
@@ -78,9 +79,9 @@ impl ScreenSpaceFluid {
         contact: 0.0,
     };
 
-    /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Beside
-    /// it belongs [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class.
-    /// Time 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
+    /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
+    /// with [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class. Time
+    /// 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
         refractions: Refractions::Two,
@@ -96,17 +97,17 @@ impl Default for ScreenSpaceFluid {
     }
 }
 
-/// How the bulk's depth layers are smoothed. Spray never is.
+/// How the bulk's depth layers are smoothed; spray is never smoothed.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Smoothing {
-    /// Not at all.
+    /// No smoothing.
     None,
     /// A plane is fitted to the window around each pixel (thesis 4.3).
     PlaneFit(PlaneFit),
     /// A bilateral filter of view depth (thesis 3.2, the earlier method).
     Bilateral(Bilateral),
-    /// Normals are averaged, depth is left alone (Takahashi & Doi).
+    /// Normals are averaged, depth is unchanged (Takahashi & Doi).
     NormalAverage(NormalAverage),
     /// The narrow-range filter (Truong & Yuksel 2018).
     NarrowRange(NarrowRange),
@@ -124,9 +125,9 @@ impl Default for Smoothing {
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Clone, PartialEq)]
 pub enum Window {
-    /// So many particle radii as they appear on screen, whatever the distance: taps spread out
-    /// for near particles and fall away for far ones. Range 0.05..=4.
+    /// A number of particle radii as they appear on screen, at any distance: taps are spread out
+    /// for near particles and dropped for far ones. Range 0.05..=4.
     Radii(#[reflect(@SettingRange::new(0.05, 4.0).unit("radii").logarithmic())] f32),
-    /// As many pixels as there are taps, as the papers have it.
+    /// One pixel per tap, as in the papers.
     Pixels,
 }

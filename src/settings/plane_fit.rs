@@ -1,4 +1,4 @@
-//! Smoothing by planes: ours, and the thesis's.
+//! Smoothing by plane fits: this crate's and the thesis's.
 
 use bevy::prelude::*;
 
@@ -9,10 +9,10 @@ use crate::range::SettingRange;
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct PlaneFit {
-    /// Which fit. Default: separable.
+    /// Form of the fit. Default: separable.
     pub form: PlaneFitForm,
-    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 5.
-    /// More: smoother between taps, at a linear (separable) or quadratic price.
+    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 5. More:
+    /// smoother between taps, at a linear (separable) or quadratic cost.
     #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
     /// How often the fit is repeated. Range 1..=8, default 1. More: smoother.
@@ -20,12 +20,12 @@ pub struct PlaneFit {
     pub iterations: u32,
     /// How large the window is. Default 1.7 radii. Larger: smoother, less detail.
     pub window: Window,
-    /// Depth difference at which a tap counts exp(-1). Unit: particle radii, range 0.5..=4,
-    /// default 2. Higher: smoother, but steps in depth begin to leak into each other.
+    /// Depth difference at which a tap has the weight exp(-1). Unit: particle radii, range 0.5..=4,
+    /// default 2. Higher: smoother, but surfaces at different depths begin to blend.
     #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
-    /// How far the fit may move a pixel before the old depth is kept. Unit: particle radii,
-    /// range 0.1.., default 2.
+    /// Largest distance by which the fit may move a pixel; beyond it, the old depth is kept. Unit:
+    /// particle radii, range 0.1.., default 2.
     #[reflect(@SettingRange::new(0.1, 8.0).unit("radii").open())]
     pub bound: f32,
 }
@@ -66,7 +66,7 @@ pub enum PlaneFitForm {
     /// Device depth, which is affine over the pixels of a plane for every projection: a linear
     /// regression over the whole window.
     DeviceDepth,
-    /// The same, first along rows, then along columns.
+    /// Device depth, first along rows, then along columns.
     #[default]
     Separable,
 }

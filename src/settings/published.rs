@@ -1,4 +1,4 @@
-//! Other published ways of smoothing, to be compared with.
+//! Other published smoothing filters, for comparison.
 
 use bevy::prelude::*;
 
@@ -23,7 +23,7 @@ pub struct Bilateral {
 }
 
 impl Bilateral {
-    /// The published taps over a window that follows the particles on screen.
+    /// The published taps over a window that scales with the particles on screen.
     pub const DEFAULT: Self = Self {
         half_taps: 3,
         iterations: 22,
@@ -76,7 +76,7 @@ pub struct NarrowRange {
     pub iterations: u32,
     /// How large the window is. Default 1.5 radii.
     pub window: Window,
-    /// δ, the depth difference that belongs to the surface. Unit: particle radii, range 1..=20,
+    /// δ, the largest depth difference within the surface. Unit: particle radii, range 1..=20,
     /// default 10 as published.
     #[reflect(@SettingRange::new(1.0, 20.0).unit("radii"))]
     pub range: f32,
@@ -101,7 +101,7 @@ pub struct CurvatureFlow {
     #[reflect(@SettingRange::new(1.0, 200.0).unit("steps"))]
     pub iterations: u32,
     /// Time step. Unit: pixels squared, range 0.01..=0.5, default 0.4. Larger: smoother; explicit
-    /// steps ring beyond 0.5.
+    /// steps oscillate beyond 0.5.
     #[reflect(@SettingRange::new(0.01, 0.5).unit("px²"))]
     pub step: f32,
     /// Depth differences beyond this are edges. Unit: particle radii, range 0.5..=8, default 3.

@@ -1,16 +1,17 @@
-//! How rays go through the liquid, and what they reflect.
+//! Ray tracing through the liquid: refractions, interface search and Fresnel reflectance.
 
 use bevy::prelude::*;
 
 use crate::range::SettingRange;
 
-/// How many interfaces between liquid and air a ray may cross (or be totally reflected at).
+/// Maximum number of interfaces between liquid and air that a ray crosses (or is totally reflected
+/// at).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Refractions {
-    /// Nothing is bent: reflection and absorption along the straight line only.
+    /// No refraction: reflection and absorption along the straight line only.
     Zero,
-    /// Only the first surface bends; absorption as along the straight ray.
+    /// Only the first surface refracts; absorption is that of the straight ray.
     One,
     /// Into one body and out of it.
     Two,
@@ -58,13 +59,13 @@ impl Default for Search {
     }
 }
 
-/// How much of the light an interface reflects.
+/// How the Fresnel reflectance of an interface is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Fresnel {
-    /// The dielectric equations for unpolarised light.
+    /// The Fresnel equations for dielectrics and unpolarised light.
     #[default]
     Exact,
-    /// Schlick's approximation; inside with the angle outside. Up to 0.06 off for water.
+    /// Schlick's approximation; rays from inside use the angle outside. Up to 0.06 off for water.
     Schlick,
 }

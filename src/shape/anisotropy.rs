@@ -26,10 +26,10 @@ const SPREAD: [f32; 2] = [1e-4, 1e-3];
 /// 0.25 at it, for particles moved by up to 0.2 spacings from a lattice.
 const SURFACE: [f32; 2] = [0.05, 0.15];
 
-/// Radius, in particle radii, of the sphere that stands for an interior particle. Nobody sees it but
-/// an eye among them, to whom it says that there is liquid: so it reaches over the gaps between
-/// particles (√3 on a lattice, more where they are moved) and yet not to the surface, which is
-/// [`SHELL`](super::classify::SHELL) away at least.
+/// Radius, in particle radii, of the sphere that represents an interior particle. It is visible
+/// only to an eye among the particles, where it marks the presence of liquid: it reaches over the
+/// gaps between particles (√3 on a lattice, more where they are moved), but not to the surface,
+/// which is at least [`SHELL`](super::classify::SHELL) away.
 const INTERIOR_RADIUS: f32 = 2.4;
 
 /// f16 rounds the axes by up to 1/2048 and the bounding box must hold them.
@@ -63,7 +63,7 @@ impl Bounds {
     }
 }
 
-/// What the splats are made of.
+/// Inputs of the splats.
 pub(super) struct Splatting<'a> {
     pub(super) grid: &'a Grid,
     pub(super) neighborhoods: &'a [Neighborhood],
@@ -73,10 +73,10 @@ pub(super) struct Splatting<'a> {
 }
 
 impl Splatting<'_> {
-    /// Makes the splats of the chunks into one slice per class and returns their bounds.
+    /// Writes the splats of the chunks into one slice per class and returns their bounds.
     ///
-    /// The halves run in parallel; what goes where depends on the counts alone, so any
-    /// number of threads gives the same splats.
+    /// The halves run in parallel. The place of each splat depends on the counts alone, so the
+    /// splats are deterministic for any number of threads.
     pub(super) fn splat(&self, chunks: Range<usize>, out: [&mut [Splat]; 3]) -> Bounds {
         match chunks.len() {
             0 => return Bounds::EMPTY,
@@ -187,7 +187,7 @@ impl Splatting<'_> {
         bounds
     }
 
-    /// How much of the anisotropy shows: 0 is the sphere at the particle.
+    /// Weight of the anisotropy: 0 gives the sphere at the particle.
     fn blend(&self, count: f32x8, trace: f32x8) -> f32x8 {
         let [sphere, full] = [self.kernel.sphere_neighbors, self.kernel.full_neighbors];
         let width = full.saturating_sub(sphere).max(1);

@@ -1,4 +1,4 @@
-//! The neighbour search: particles that may be neighbours of a few particles of one cell.
+//! The neighbourhood search: particles that may be neighbours of a few particles of one cell.
 
 use std::ops::Range;
 
@@ -12,8 +12,8 @@ use super::{
 
 const LANES: usize = 8;
 
-/// Most candidates that one particle is compared with. A cell may hold any number of
-/// particles; above this an even sample of them stands for all, which bounds the work.
+/// Maximum number of candidates that one particle is compared with. A cell may hold any number of
+/// particles; above this, an even sample represents them all, which bounds the work.
 pub(super) const MAX_CANDIDATES: usize = 2048;
 
 /// Padding: too far from any particle to be its neighbour, near enough for a finite difference.
@@ -28,7 +28,7 @@ pub(super) struct Candidates {
     y: Axis,
     z: Axis,
     len: usize,
-    /// Number of particles that each candidate stands for.
+    /// Number of particles that each candidate represents.
     multiplicity: usize,
     reach: f32,
 }
@@ -146,7 +146,8 @@ impl Candidates {
             .any(|[x, y, z]| (x * x + y * y + z * z).simd_le(limit).any())
     }
 
-    /// Weighs the candidates about a particle at `position`, which is one of them.
+    /// Measures the weighted neighbourhood of a particle at `position`, which is one of the
+    /// candidates.
     pub(super) fn neighborhood(&self, position: Vec3) -> Neighborhood {
         let per_reach = 1.0 / self.reach;
         let limit = f32x8::splat(self.reach * self.reach);

@@ -1,4 +1,4 @@
-//! Bulk, interior or spray (thesis 4.2; the interior is our addition).
+//! Bulk, interior or spray (thesis 4.2; the interior is an addition).
 
 use std::f32::consts::PI;
 
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{CHUNK, SurfaceKernel, candidates::Candidates, grid::Grid, neighborhood::Neighborhood};
 
-/// What a particle belongs to, in the order of the splats.
+/// Class of a particle, in the order of the splats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Class {
     /// The body of the liquid, up to its surface.
@@ -18,7 +18,7 @@ pub(super) enum Class {
     Spray,
 }
 
-/// Part of the neighbours at rest that a full neighbourhood has at least.
+/// Smallest fraction of the neighbours at rest in a full neighbourhood.
 const FULL_COUNT: f32 = 0.75;
 /// Largest weighted mean of a full neighbourhood, in R. At a flat surface it is 0.2 to 0.3.
 const FULL_MEAN: f32 = 0.1;

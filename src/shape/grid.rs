@@ -158,13 +158,12 @@ pub(super) struct Group {
     pub(super) particles: Range<usize>,
 }
 
-/// Where cells are and how they are numbered: (x + y · `stride_y` + z · `stride_z`) mod `cells`.
+/// Positions and numbers of cells: (x + y · `stride_y` + z · `stride_z`) mod `cells`.
 ///
-/// Where the bounding box has few enough cells this is the usual dense grid. Where it has
-/// more, the number is taken modulo a prime, which folds space onto itself. Then far away
-/// particles share cells; the distance test tells them apart. `stride_y` ≥ 3,
-/// `stride_z` ≥ 3 `stride_y` and `cells` ≥ 3 `stride_z` keep the 27 neighbours of a cell
-/// distinct in both cases.
+/// Where the bounding box has few enough cells this is the usual dense grid. Where it has more, the
+/// number is taken modulo a prime, which folds space onto itself. Then far away particles share
+/// cells; the distance test separates them. `stride_y` ≥ 3, `stride_z` ≥ 3 `stride_y` and
+/// `cells` ≥ 3 `stride_z` keep the 27 neighbours of a cell distinct in both cases.
 #[derive(Clone, Copy, Default)]
 struct Layout {
     cells_per_metre: f64,

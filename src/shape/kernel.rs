@@ -1,14 +1,14 @@
-//! What a user sets about the shape of the splats.
+//! Settings for the shape of the splats.
 
 use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault};
 
 use super::ShapeError;
 use crate::range::SettingRange;
 
-/// How the particles of one fluid are classified and shaped into ellipsoids.
+/// How the particles of one fluid are classified and shaped into ellipsoids (anisotropic kernels).
 ///
-/// The lengths are in particle radii, so one kernel serves a scene of any scale.
-/// The defaults suit particles about two radii apart, as SPH keeps them at rest.
+/// Lengths are in particle radii, so one kernel suits scenes of any scale. The defaults suit
+/// particles about two radii apart, as SPH keeps them at rest.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone)]
 pub struct SurfaceKernel {
@@ -37,25 +37,25 @@ pub struct SurfaceKernel {
     /// How far a splat moves towards the mean of its neighbours (λ of Yu & Turk).
     ///
     /// Unit: none. Range: 0 to 1. Default: 0.9.
-    /// Higher: a smoother surface; it also sinks, which `surface_offset` makes up for.
+    /// Higher: a smoother surface; it also sinks, which `surface_offset` compensates.
     /// Lower: the particles show through as bumps.
     #[reflect(@SettingRange::new(0.0, 1.0))]
     pub center_shift: f32,
 
     /// How far the splats of particles at a surface move outwards again.
     ///
-    /// Unit: particle radii. Range: 0 to 4. Default: 1.15, at which flat surfaces are drawn
-    /// where the outermost particles' own surfaces end, so that liquid touches the walls it
-    /// stands at. 0 (Yu & Turk): about that much deeper. Higher: the liquid swells, and gaps
+    /// Unit: particle radii. Range: 0 to 4. Default: 1.15, which draws flat surfaces where the
+    /// outermost particles' own surfaces end, so that liquid touches the walls beside it. 0 (Yu &
+    /// Turk): flat surfaces are drawn about that much deeper. Higher: the liquid swells, and gaps
     /// between the outermost particles become pits.
     #[reflect(@SettingRange::new(0.0, 4.0).unit("radii"))]
     pub surface_offset: f32,
 
-    /// Longest axis of an ellipsoid over its shortest (`k_r` of Yu & Turk).
+    /// Largest ratio of an ellipsoid's longest axis to its shortest (`k_r` of Yu & Turk).
     ///
     /// Unit: none. Range: 1 to 16. Default: 4.
     /// Higher: flatter discs, which tile a surface better and stick out more at corners.
-    /// Lower: rounder splats; 1 makes spheres of all, still shifted and scaled.
+    /// Lower: rounder splats; 1 makes all of them spheres, still shifted and scaled.
     #[reflect(@SettingRange::new(1.0, 16.0))]
     pub max_ratio: f32,
 
@@ -78,15 +78,15 @@ pub struct SurfaceKernel {
 
     /// Number of neighbours from which a splat is fully anisotropic.
     ///
-    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (`N_ε` = 25 in the
-    /// paper, for a wider R). Shape, shift and scale blend smoothly in between.
-    /// Higher: a longer blend. Lower: a shorter one, and visible pops where it is short.
+    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (`N_ε` = 25 in the paper,
+    /// for a wider R). Shape, shift and scale blend smoothly in between.
+    /// Higher: a longer blend. Lower: a shorter blend, with visible pops if it is short.
     #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub full_neighbors: u32,
 
-    /// Whether to tell apart the particles too deep inside to be seen.
+    /// Whether particles too deep inside to be seen are classified as interior.
     ///
-    /// Default: true: they are counted as interior and cost no eigen-solve. False: they are bulk.
+    /// Default: true: they cost no eigen-solve. False: they are bulk.
     pub skip_interior: bool,
 }
 
@@ -111,14 +111,14 @@ impl SurfaceKernel {
         skip_interior: true,
     };
 
-    /// As in the thesis: the surface sinks, and what is hidden inside is drawn as well.
+    /// As in the thesis: the surface sinks, and hidden interior particles are drawn as well.
     pub const THESIS: Self = Self {
         surface_offset: 0.0,
         skip_interior: false,
         ..Self::DEFAULT
     };
 
-    /// As before anisotropic kernels: spheres of one class, all of them drawn (thesis 3).
+    /// The method before anisotropic kernels: spheres of one class, all of them drawn (thesis 3).
     pub const EARLIER: Self = Self {
         spray_threshold: 0,
         anisotropic: false,
@@ -126,8 +126,10 @@ impl SurfaceKernel {
         ..Self::DEFAULT
     };
 
-    /// For smoke and fire: every particle a ball of its radius, all of one class. Let the radius
-    /// be as wide as the spacing and more, so that balls overlap, and the medium so much thinner.
+    /// For smoke and fire: every particle is a ball of its radius, all of one class.
+    ///
+    /// Choose a radius of at least the spacing, so that balls overlap, and a correspondingly
+    /// thinner medium.
     pub const PUFFS: Self = Self {
         neighbor_radius: 1.0,
         ..Self::EARLIER
@@ -136,7 +138,8 @@ impl SurfaceKernel {
     /// Checks every field against its documented range.
     ///
     /// # Errors
-    /// [`ShapeError::Setting`] or [`ShapeError::NeighborOrder`], naming the field and its value.
+    /// Returns [`ShapeError::Setting`] or [`ShapeError::NeighborOrder`], which name the field and
+    /// its value.
     pub fn validate(&self) -> Result<(), ShapeError> {
         let ranges = [
             ("neighbor_radius", self.neighbor_radius, 1.0, 10.0),

@@ -1,9 +1,10 @@
 //! Particles → splats, on the CPU.
 //!
-//! One call of [`ShapeWorkspace::shape`] sorts the particles of a fluid into a grid, weighs
-//! the neighbourhood of each, tells bulk, interior and spray apart, and turns every particle
-//! into an ellipsoid that follows the surface around it (Yu & Turk, *Reconstructing Surfaces
-//! of Particle-Based Fluids Using Anisotropic Kernels*, ACM TOG 32(1), 2013).
+//! One call of [`ShapeWorkspace::shape`] sorts the particles of a fluid into a grid for the
+//! neighbourhood search, computes the weighted covariance of each neighbourhood, separates bulk,
+//! interior and spray, and turns every particle into an ellipsoid that follows the surface around
+//! it (an anisotropic kernel: Yu & Turk, *Reconstructing Surfaces of Particle-Based Fluids Using
+//! Anisotropic Kernels*, ACM TOG 32(1), 2013).
 //!
 //! ```
 //! use bevy::math::Vec3;
@@ -16,12 +17,12 @@
 //! # Ok::<(), bevy_fluid::shape::ShapeError>(())
 //! ```
 //!
-//! Work and memory are linear in the number of particles: however far apart they are, and
-//! also where very many share one place, as a particle is compared with an even sample of
-//! 2048 of those around it at the most. The result depends neither on the number of threads
-//! nor, but for rounding and such samples, on the order of the particles. All is relative to
-//! the particle, so the only loss far from the origin is that of the f32 positions
-//! themselves: 1e6 m away they are multiples of 0.06 m.
+//! Work and memory are linear in the number of particles, however far apart they are and even where
+//! very many share one place: a particle is compared with an even sample of at most 2048 of those
+//! around it. The result is deterministic for any number of threads and, except for rounding and
+//! such samples, independent of the order of the particles. All computation is relative to the
+//! particle, so the only loss far from the origin is that of the f32 positions themselves: 1e6 m
+//! away they are multiples of 0.06 m.
 
 mod anisotropy;
 mod candidates;
@@ -49,8 +50,8 @@ use classify::Classes;
 use grid::Grid;
 use neighborhood::Neighborhood;
 
-/// Sorted particles that one task handles. Fixed, so that tasks, and with them every
-/// rounding, are the same for any number of threads.
+/// Number of sorted particles per task. Fixed, so that tasks, and thus all rounding, are
+/// deterministic for any number of threads.
 const CHUNK: usize = 512;
 
 /// Smallest and largest radius (m) whose squares and cubes are far from f32's limits.
@@ -60,10 +61,10 @@ const RADII: [f32; 2] = [1e-9, 1e9];
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ShapeError {
-    /// The radius is not a length.
+    /// The radius is out of range.
     #[error("particle radius is {0} m; it must be positive and finite, from 1e-9 to 1e9 m")]
     Radius(f32),
-    /// A setting is out of its range.
+    /// A setting is out of range.
     #[error("`SurfaceKernel::{field}` is {value}; it must be from {min} to {max}")]
     Setting {
         /// Name of the field.
@@ -75,7 +76,7 @@ pub enum ShapeError {
         /// Largest value allowed.
         max: f32,
     },
-    /// The blend from sphere to ellipsoid runs backwards.
+    /// `sphere_neighbors` exceeds `full_neighbors`.
     #[error(
         "`SurfaceKernel::sphere_neighbors` is {sphere}; it must not exceed `full_neighbors`, {full}"
     )]
@@ -85,13 +86,14 @@ pub enum ShapeError {
         /// `full_neighbors`.
         full: u32,
     },
-    /// There are more particles than a splat can number.
+    /// There are more particles than a splat's index can count.
     #[error("{0} particles; there can be at most {max}", max = u32::MAX)]
     TooManyParticles(usize),
 }
 
-/// Buffers of the shape stage. Kept from frame to frame, they stop growing: a frame with no
-/// more particles than before allocates nothing.
+/// Buffers of the shape stage, reused from frame to frame.
+///
+/// A frame with no more particles than before allocates nothing.
 #[derive(Default)]
 pub struct ShapeWorkspace {
     grid: Grid,
@@ -105,10 +107,11 @@ impl ShapeWorkspace {
     /// Runs on rayon's current thread pool. Particles with a coordinate that is not finite,
     /// or beyond ±1e30 m, are dropped and counted in [`FluidSplats::dropped`].
     ///
-    /// Without particles any radius will do.
+    /// Without particles, any radius is valid.
     ///
     /// # Errors
-    /// An unusable radius or setting, named with its value; `out` is empty then.
+    /// Returns an error that names the invalid radius or setting and its value; `out` is then
+    /// empty.
     pub fn shape(
         &mut self,
         positions: &[Vec3],
@@ -154,7 +157,7 @@ impl ShapeWorkspace {
 
 fn check(positions: &[Vec3], radius: f32, kernel: &SurfaceKernel) -> Result<(), ShapeError> {
     kernel.validate()?;
-    // What is yet to be loaded or emitted may bring its radius along.
+    // The radius of a fluid that is still to be loaded or emitted may be set later.
     if !positions.is_empty() && !(RADII[0]..=RADII[1]).contains(&radius) {
         return Err(ShapeError::Radius(radius));
     }

@@ -1,4 +1,4 @@
-//! The neighbour pass: how many neighbours a particle has, and how they lie about it.
+//! The neighbour pass: count, mean and covariance of every particle's neighbourhood.
 
 use rayon::prelude::*;
 

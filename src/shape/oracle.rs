@@ -1,6 +1,6 @@
-//! The simple, slow versions that the tests compare with.
+//! Simple, slow reference implementations for the tests.
 //!
-//! Shared by the unit tests and `tests/shape.rs`; uses nothing of the stage itself.
+//! Shared by the unit tests and `tests/cpu`; they use nothing of the stage itself.
 
 use bevy::math::Vec3;
 
@@ -76,7 +76,7 @@ pub(crate) fn eigenvalues([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> [f64; 3] {
     values
 }
 
-/// Evenly distributed numbers from 0 to 1, the same in every run.
+/// Deterministic, evenly distributed numbers from 0 to 1.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

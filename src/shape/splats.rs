@@ -1,4 +1,4 @@
-//! What the shape stage hands to the renderer.
+//! Output of the shape stage, for the renderer.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use bevy::math::{Mat3, Vec3};
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 
-/// One ellipsoid: the points c + s·A·u with |u| = 1. 32 bytes, uploaded as they are.
+/// One ellipsoid: the points c + s·A·u with |u| = 1. 32 bytes, uploaded unchanged.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Splat {
@@ -67,11 +67,11 @@ pub struct FluidSplats {
 pub struct ShapeTimes {
     /// Sorting the particles into cells.
     pub grid: Duration,
-    /// Weighing the neighbourhoods and telling the classes apart.
+    /// Measuring the neighbourhoods and classifying the particles.
     pub classify: Duration,
     /// Making the ellipsoids.
     pub anisotropy: Duration,
-    /// All of it.
+    /// Total time.
     pub total: Duration,
 }
 
@@ -98,7 +98,7 @@ impl FluidSplats {
         [bulk, interior, spray]
     }
 
-    /// Empties all but the buffer, which the next frame writes over.
+    /// Resets everything but the buffer, which the next frame overwrites.
     pub(super) fn clear(&mut self) {
         let mut splats = std::mem::take(&mut self.splats);
         splats.clear();
@@ -108,8 +108,8 @@ impl FluidSplats {
         };
     }
 
-    /// Makes room for as many splats of each class. Old splats stay until written over:
-    /// clearing them first would double the writes.
+    /// Makes room for `counts` splats by class. Old splats stay until overwritten: clearing them
+    /// first would double the writes.
     pub(super) fn resize(&mut self, counts: [usize; 3]) -> [&mut [Splat]; 3] {
         [self.bulk, self.interior, self.spray] = counts.map(|count| count as u32);
         self.splats.resize(counts.iter().sum(), Splat::zeroed());

@@ -1,4 +1,4 @@
-//! What the public interface does not show: neighbours, moments, eigenvalues, memory.
+//! Tests below the public interface: neighbours, moments, eigenvalues, memory.
 
 use bevy::math::Vec3;
 use wide::f32x8;

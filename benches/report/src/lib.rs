@@ -1,5 +1,5 @@
 //! Speed against error of `bevy_fluid`, measured in one run: the program behind
-//! `cargo bench --bench speed_error`.
+//! `cargo bench --package fluid_benches --bench speed_error`.
 //!
 //! Every scene is drawn headless with every method. Errors are those of what the GPU holds
 //! against `fluid_reference`; times are GPU timestamps, the methods taking turns. [`run`] writes a

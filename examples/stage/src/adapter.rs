@@ -1,4 +1,4 @@
-//! Is there anything that can render? Asked first, since Bevy panics where there is not.
+//! Checks for an adapter that can render, first of all, since Bevy panics without one.
 
 use std::sync::OnceLock;
 
@@ -7,8 +7,8 @@ use wgpu::{BackendOptions, Instance, InstanceDescriptor, RequestAdapterOptions};
 
 use crate::StageError;
 
-/// Asks once per process, with Bevy's own settings (`WGPU_BACKEND` and the like): what is found
-/// here, Bevy finds as well.
+/// Checks once per process, with Bevy's own settings (`WGPU_BACKEND` and the like), so that Bevy
+/// finds the same adapter.
 pub(crate) fn require_adapter() -> Result<(), StageError> {
     static FOUND: OnceLock<bool> = OnceLock::new();
     if *FOUND.get_or_init(|| block_on(find_adapter())) {

@@ -1,5 +1,5 @@
-//! The three options of the small examples, by hand: they should not need more than Bevy. Those with
-//! more of them use clap.
+//! The three options of the small examples, parsed by hand so that these need only Bevy. Examples
+//! with more options use clap.
 
 use std::{ffi::OsString, path::PathBuf};
 
@@ -19,17 +19,17 @@ Options:
   --frames N       frames to simulate before the picture is taken
   --help           print this";
 
-/// Why the command line was not understood.
+/// Why the command line is invalid.
 #[derive(Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ArgumentError {
-    /// `--help` was asked for: not an error, but not a run either.
+    /// `--help` was requested: not an error, but not a run either.
     #[error("{USAGE}")]
     Help,
-    /// An option or a stray word that is not known.
+    /// An unknown option or a stray word.
     #[error("unknown option `{0}` (see --help)")]
     Unknown(String),
-    /// An option that is the last word.
+    /// An option without its value.
     #[error("option `{0}` needs a value")]
     MissingValue(&'static str),
     /// A size that is not two whole numbers with an `x` between, or out of range.
@@ -66,8 +66,8 @@ impl StagePlugins {
         }
     }
 
-    /// This stage changed by `--out FILE.png`, `--size WxH` and `--frames N`, the program's name
-    /// left out.
+    /// This stage changed by `--out FILE.png`, `--size WxH` and `--frames N`, without the program's
+    /// name.
     pub fn parse(
         mut self,
         args: impl IntoIterator<Item = OsString>,
@@ -87,8 +87,8 @@ impl StagePlugins {
     }
 }
 
-/// This program's options, as clap reads them; ends the program with one line and exit code 2 where
-/// they make no sense.
+/// This program's options, parsed by clap; ends the program with one line and exit code 2 if they
+/// are invalid.
 pub fn parse_args<A: Parser>() -> A {
     A::try_parse().unwrap_or_else(|error| {
         if matches!(
@@ -97,7 +97,7 @@ pub fn parse_args<A: Parser>() -> A {
         ) {
             error.exit();
         }
-        // Clap goes on about usage; what is wrong is in its first paragraph.
+        // Clap's message continues with the usage; the error is in its first paragraph.
         let text = error.to_string();
         let first = text.split("\n\n").next().unwrap_or(&text);
         let line = first.split_whitespace().collect::<Vec<_>>().join(" ");

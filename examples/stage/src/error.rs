@@ -1,4 +1,4 @@
-//! What can go wrong on the stage, each in one line that names the thing.
+//! Errors of the stage, each in one line that names the cause.
 
 use std::{io, path::PathBuf};
 
@@ -18,7 +18,7 @@ pub enum StageError {
          `apt-get install mesa-vulkan-drivers` (or run scripts/setup)"
     )]
     NoAdapter,
-    /// A window was wanted where none can be opened.
+    /// A window was requested, but none can be opened.
     #[error(
         "no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set): \
          render a picture instead with `--out FILE.png`"
@@ -30,12 +30,13 @@ pub enum StageError {
     /// Shaders or pipelines that do not compile.
     #[error("pipelines failed to compile:\n{}", .0.join("\n"))]
     Pipelines(Vec<String>),
-    /// Pipelines that neither compiled nor failed, for want of a shader or an import of it.
+    /// Pipelines that neither compiled nor failed, because a shader or one of its imports is
+    /// missing.
     #[error("pipelines still waiting after {seconds} s (is a shader or an import missing?):\n{}", .waiting.join("\n"))]
     Unsettled {
-        /// How long nothing has changed.
+        /// Time without a change.
         seconds: u64,
-        /// What waits, and for what.
+        /// The waiting pipelines, and what they wait for.
         waiting: Vec<String>,
     },
     /// Errors that wgpu's validation reported since the app was built.
@@ -44,20 +45,21 @@ pub enum StageError {
     /// The stage's picture is not on the GPU: no frame has been rendered yet.
     #[error("nothing has been rendered yet")]
     NotRendered,
-    /// A texture that cannot be copied: no `COPY_SRC`, multisampled, compressed or in parts.
+    /// A texture that cannot be copied: no `COPY_SRC`, multisampled, compressed or with several
+    /// aspects.
     #[error("cannot read back a {format:?} texture with {samples} samples: {reason}")]
     Unreadable {
         /// Its format.
         format: TextureFormat,
         /// Its sample count.
         samples: u32,
-        /// What is in the way.
+        /// The reason.
         reason: &'static str,
     },
     /// A buffer without `COPY_SRC`.
     #[error("cannot read back a buffer without COPY_SRC (its usages: {0})")]
     UnreadableBuffer(String),
-    /// The GPU did not hand over what was copied.
+    /// The GPU did not return the copied data.
     #[error("the GPU did not return the data: {0}")]
     Map(String),
     /// The picture's file cannot be written.
@@ -65,7 +67,7 @@ pub enum StageError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
 }

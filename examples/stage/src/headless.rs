@@ -1,4 +1,4 @@
-//! Frame by frame without a window, for tests and benches.
+//! Rendering frame by frame without a window, for tests and benches.
 
 use std::{
     mem,
@@ -27,19 +27,21 @@ use crate::{
     stage::{GpuErrors, Stage, extent, is_valid_size},
 };
 
-/// Frames without a waiting pipeline before the stage counts as settled: what is extracted in one
-/// frame asks for its pipelines in the next.
+/// Frames without a waiting pipeline before the stage counts as settled: pipelines of entities
+/// extracted in one frame are requested in the next.
 const QUIET_FRAMES: u32 = 2;
-/// How long the same pipelines may wait before they are taken to wait for good.
+/// How long the same pipelines may wait before they count as stuck.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// An app without a window, ready for [`settle`] and [`step`]: `configure` adds what is to be
-/// shown. Its clock stands still until [`set_time_step`].
+/// An app without a window, ready for [`settle`] and [`step`]; `configure` adds its contents.
+///
+/// Its clock is stopped until [`set_time_step`].
 pub fn headless_app(size: UVec2, configure: impl FnOnce(&mut App)) -> Result<App, StageError> {
     headless_app_with(size, WgpuSettings::default(), configure)
 }
 
-/// The same on a device that is not Bevy's default: with fewer features, or tighter limits.
+/// The same as [`headless_app`], on a device that is not Bevy's default: with fewer features, or
+/// tighter limits.
 pub fn headless_app_with(
     size: UVec2,
     settings: WgpuSettings,
@@ -62,7 +64,7 @@ pub(crate) fn finish(app: &mut App) {
 
 /// Renders with the clock stopped until every pipeline is compiled.
 ///
-/// Systems run in these frames too, but time does not pass: what moves by `Time` stays where it is.
+/// Systems run in these frames too, but time does not pass: motion driven by `Time` stops.
 pub fn settle(app: &mut App) -> Result<(), StageError> {
     let clock = swap_clock(app, TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let settled = wait_for_pipelines(app);
@@ -99,8 +101,8 @@ fn wait_for_pipelines(app: &mut App) -> Result<(), StageError> {
     Ok(())
 }
 
-/// Steps `frames` frames, each as long as [`set_time_step`] says, and waits for the GPU after each:
-/// the CPU must not run ahead by a hundred frames' worth of buffers.
+/// Steps `frames` frames, each as long as set by [`set_time_step`], and waits for the GPU after
+/// each: the CPU must not run ahead by a hundred frames' worth of buffers.
 pub fn step(app: &mut App, frames: u32) {
     for _ in 0..frames {
         update(app);
@@ -115,13 +117,15 @@ fn update(app: &mut App) {
     }
 }
 
-/// How far the clock moves in each frame from now on.
+/// Sets how far the clock moves in each frame from now on.
 pub fn set_time_step(app: &mut App, time_step: Duration) {
     swap_clock(app, TimeUpdateStrategy::ManualDuration(time_step));
 }
 
-/// The stage's picture after the last frame. Fails where a pipeline did not compile or the GPU's
-/// validation has complained: such a picture shows nothing that could be trusted.
+/// The stage's picture after the last frame.
+///
+/// Fails if a pipeline did not compile or the GPU's validation has reported an error, since such a
+/// picture cannot be trusted.
 pub fn capture(app: &mut App) -> Result<RgbaImage, StageError> {
     check(app)?;
     let stage = app.world().resource::<Stage>();
@@ -147,7 +151,7 @@ pub fn resize(app: &mut App, size: UVec2) -> Result<(), StageError> {
     if let Some(mut image) = world.resource_mut::<Assets<Image>>().get_mut(id) {
         image.texture_descriptor.size = extent(size);
     }
-    // Bevy tells its cameras a frame after the texture has changed; for that frame they would
+    // Bevy updates its cameras a frame after the texture has changed; for that frame they would
     // render at the old size.
     world.write_message(AssetEvent::Modified { id });
     Ok(())
@@ -160,7 +164,7 @@ pub fn adapter_name(app: &App) -> String {
         .map_or_else(String::new, |info| info.name.clone())
 }
 
-/// What the GPU's validation has reported since the app was built, oldest first.
+/// All errors that the GPU's validation has reported since the app was built, oldest first.
 pub fn validation_errors(app: &App) -> Vec<String> {
     app.world()
         .get_resource::<GpuErrors>()

@@ -1,10 +1,9 @@
-//! The stage on which the examples, tests and benches of `bevy_fluid` play.
+//! The stage shared by the examples, tests and benches of `bevy_fluid`.
 //!
-//! - [`StagePlugins`] stands in for `DefaultPlugins`: a window, or a picture written without one.
-//! - [`headless_app`] with [`settle`], [`step`], [`capture`] and [`read_texture`] is for tests and
-//!   benches: frame by frame, and what the GPU holds afterwards.
-//! - [`simulation`] sets liquids in motion.
-//! - [`scenery`] is what stands around the liquid: floor, pillars, sky, sun, tank and camera.
+//! - [`StagePlugins`] replaces `DefaultPlugins`: a window, or a picture written without one.
+//! - [`headless_app`] with [`settle`], [`step`], [`capture`] and [`read_texture`] renders frame by
+//!   frame and reads back the GPU's data, for tests and benches.
+//! - [`scenery`] builds the surroundings of the liquid: floor, pillars, sky, sun, tank and camera.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -26,13 +25,13 @@ mod adapter;
 mod args;
 mod error;
 mod headless;
+pub mod log;
 mod picture;
 mod pipelines;
 mod plugins;
 mod read;
 pub mod scenery;
 mod shapes;
-pub mod simulation;
 mod stage;
 mod texels;
 mod timing;
@@ -46,7 +45,7 @@ pub use headless::{
 pub use picture::PendingPicture;
 pub use plugins::{StagePlugins, VIEW_SIZE};
 pub use read::{read_buffer, read_subresource, read_texture};
-pub use shapes::ball;
+pub use shapes::{ball, cylinder, dam, lattice};
 pub use stage::Stage;
 pub use texels::TextureData;
 pub use timing::{gpu_spans, median_gpu_ms};

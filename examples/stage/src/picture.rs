@@ -59,8 +59,9 @@ fn run(app: &mut App, out: &Path, frames: u32, time_step: Duration) -> Result<Ap
     Ok(app.should_exit().unwrap_or(AppExit::Success))
 }
 
-/// A picture is written beside its place and then moved there: at no time is half a picture in
-/// that place, and a failed run leaves the last one as it was.
+/// A picture that is written to a temporary file and then renamed.
+///
+/// Its path never holds half a picture, and a failed run leaves the last one unchanged.
 pub struct PendingPicture<'a> {
     out: &'a Path,
     temporary: PathBuf,
@@ -68,7 +69,7 @@ pub struct PendingPicture<'a> {
 }
 
 impl<'a> PendingPicture<'a> {
-    /// Takes the place beside `out`: a path that cannot be written to is found out at once.
+    /// Creates the temporary file beside `out`: a path that cannot be written to fails at once.
     pub fn create(out: &'a Path) -> Result<Self, StageError> {
         let failed = |source| StageError::Write {
             path: out.into(),
@@ -91,9 +92,9 @@ impl<'a> PendingPicture<'a> {
         })
     }
 
-    /// Writes the picture and moves it to its place.
+    /// Writes the picture and moves it to its path.
     pub fn commit(self, image: RgbaImage) -> Result<(), StageError> {
-        // A window shows no alpha either.
+        // Alpha is dropped, as in a window.
         let opaque = DynamicImage::ImageRgba8(image).into_rgb8();
         let mut writer = BufWriter::new(&self.file);
         opaque
@@ -110,7 +111,7 @@ impl<'a> PendingPicture<'a> {
 
 impl Drop for PendingPicture<'_> {
     fn drop(&mut self) {
-        // After a commit there is nothing left under this name.
+        // After a commit no file of this name is left.
         let _ = fs::remove_file(&self.temporary);
     }
 }

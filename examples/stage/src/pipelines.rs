@@ -1,4 +1,4 @@
-//! Which pipelines still wait and which have failed, in words.
+//! Descriptions of waiting and failed pipelines.
 
 use std::collections::HashSet;
 
@@ -10,8 +10,8 @@ use bevy::{
     },
 };
 
-/// Pipelines that Bevy still tries to compile. A failure for want of a shader is tried again, for
-/// it may still be loading; any other failure is final and not among these.
+/// Pipelines that Bevy still tries to compile. A failure because of a missing shader is retried,
+/// since the shader may still be loading; any other failure is final and not included.
 pub(crate) fn waiting_pipelines(app: &App) -> Vec<String> {
     let Some(cache) = cache(app) else {
         return Vec::new();

@@ -1,14 +1,10 @@
 //! `DefaultPlugins` for a window, or the same plugins without one.
 
-use std::{
-    path::PathBuf,
-    sync::atomic::{AtomicBool, Ordering},
-    time::Duration,
-};
+use std::{path::PathBuf, time::Duration};
 
 use bevy::{
     app::{PluginGroupBuilder, TerminalCtrlCHandlerPlugin},
-    log::{Level, LogPlugin},
+    log::LogPlugin,
     prelude::*,
     render::{
         RenderPlugin, diagnostic::RenderDiagnosticsPlugin,
@@ -23,19 +19,20 @@ use bevy_panorbit_camera::PanOrbitCameraPlugin;
 use crate::{
     StageError,
     adapter::require_adapter,
+    log,
     picture::PicturePlugin,
     stage::{Stage, StagePlugin, is_valid_size},
 };
 
-/// The size of windows and pictures where none is asked for, in pixels.
+/// Default size of windows and pictures, in pixels.
 pub const VIEW_SIZE: UVec2 = UVec2::new(1280, 720);
 
-/// Stands in for `DefaultPlugins`: with a window, or, where a picture is asked for, without.
+/// Replaces `DefaultPlugins`: with a window or, if a picture is requested, without one.
 ///
-/// Ends the program with one line on stderr and exit code 2 where nothing can be shown: no adapter,
-/// no display, an impossible size. Without a window `App::run` renders until every pipeline is
-/// compiled (with the clock stopped), then steps `frames` frames of `time_step` each, writes the
-/// picture and returns; pass its `AppExit` on from `main`.
+/// Ends the program with one line on stderr and exit code 2 if nothing can be shown: no adapter, no
+/// display, an invalid size. Without a window, `App::run` renders until every pipeline is compiled
+/// (with the clock stopped), then steps `frames` frames of `time_step` each, writes the picture and
+/// returns; pass its `AppExit` on from `main`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StagePlugins {
     /// Where to write the picture (PNG), or `None` for a window.
@@ -44,8 +41,8 @@ pub struct StagePlugins {
     pub size: UVec2,
     /// Frames before the picture is taken; 0 shows the start. Default: 60. Unused in a window.
     pub frames: u32,
-    /// Unit: time a frame. How far the clock moves from frame to frame of a picture, however long
-    /// rendering takes. Default: 1/60 s. Unused in a window.
+    /// Time step from frame to frame of a picture, however long rendering takes. Unit: time per
+    /// frame. Default: 1/60 s. Unused in a window.
     pub time_step: Duration,
     /// Title of the window.
     pub title: String,
@@ -106,14 +103,15 @@ fn windowed(size: UVec2, title: String) -> Result<PluginGroupBuilder, StageError
         .add(PanOrbitCameraPlugin))
 }
 
-/// The plugins of a stage without a window; its clock stands still until a
-/// [`TimeUpdateStrategy`] moves it.
+/// The plugins of a stage without a window; its clock is stopped until a [`TimeUpdateStrategy`]
+/// moves it.
 pub(crate) fn headless(
     size: UVec2,
     settings: WgpuSettings,
 ) -> Result<PluginGroupBuilder, StageError> {
     check(size)?;
-    let group = DefaultPlugins
+    log::listen();
+    Ok(DefaultPlugins
         .set(WindowPlugin {
             primary_window: None,
             exit_condition: ExitCondition::DontExit,
@@ -124,27 +122,17 @@ pub(crate) fn headless(
             render_creation: settings.into(),
             ..default()
         })
-        .set(LogPlugin {
-            level: Level::WARN,
-            // The renderer would warn on every start that software rendering is slow.
-            filter: "wgpu=error,naga=warn,bevy_render::renderer=error".into(),
-            ..default()
-        })
+        // The log belongs to the process, and tests build many apps in one.
+        .disable::<LogPlugin>()
         .disable::<WinitPlugin>()
         // Pictures and measurements are of the frame just simulated, not of the one before it.
         .disable::<PipelinedRenderingPlugin>()
-        // Without an event loop nobody answers it: the shell's own Ctrl-C ends the program at once.
+        // Without an event loop nothing handles it: the shell's own Ctrl-C ends the program at
+        // once.
         .disable::<TerminalCtrlCHandlerPlugin>()
         .add(RenderDiagnosticsPlugin)
         .add(ClockPlugin)
-        .add(StagePlugin { size });
-    // The log belongs to the process, and tests build many apps in one.
-    static LOG_IS_UP: AtomicBool = AtomicBool::new(false);
-    Ok(if LOG_IS_UP.swap(true, Ordering::Relaxed) {
-        group.disable::<LogPlugin>()
-    } else {
-        group
-    })
+        .add(StagePlugin { size }))
 }
 
 struct ClockPlugin;

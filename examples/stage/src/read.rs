@@ -1,4 +1,4 @@
-//! From the GPU to the CPU: what a texture or a buffer holds, exactly.
+//! Exact readback of textures and buffers from the GPU.
 
 use std::sync::mpsc;
 
@@ -18,9 +18,9 @@ use bevy::{
 
 /// Reads the first layer of the first mip level.
 ///
-/// Any uncompressed format with one aspect: colours of 8 to 32 bits, integers, `Depth32Float`. The
-/// texture needs `COPY_SRC` and a single sample. Textures of the render world change hands from
-/// frame to frame (`TextureCache`): read them before the next update.
+/// Supports any uncompressed format with one aspect: colours of 8 to 32 bits, integers,
+/// `Depth32Float`. The texture needs `COPY_SRC` and a single sample. Textures of the render world
+/// are reused from frame to frame (`TextureCache`): read them before the next update.
 pub fn read_texture(app: &App, texture: &wgpu::Texture) -> Result<TextureData, StageError> {
     read_subresource(app, texture, 0, 0)
 }
@@ -113,7 +113,7 @@ pub fn read_buffer(app: &App, buffer: &wgpu::Buffer) -> Result<Vec<u8>, StageErr
     })
 }
 
-/// Has `copy` fill a buffer of `bytes` bytes and waits until it can be read.
+/// Lets `copy` fill a buffer of `bytes` bytes and waits until it can be read.
 fn download(
     app: &App,
     bytes: usize,

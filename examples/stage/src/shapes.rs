@@ -1,8 +1,8 @@
 //! Particles at rest.
 
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
-use bevy::math::{Vec2, Vec3, vec3};
+use bevy::math::{Vec2, Vec3, ivec3, vec3};
 
 /// Turns from one particle of a shell to the next (rad): neighbours are never in a row.
 const GOLDEN_ANGLE: f32 = 2.399_963;
@@ -23,6 +23,40 @@ pub fn ball(size: f32, radius: f32) -> Vec<Vec3> {
             })
         })
         .collect()
+}
+
+/// A block of liquid at the left wall of a tank, as deep as the tank: `dam` wide and high.
+pub fn dam(tank: Vec3, dam: Vec2, radius: f32) -> Vec<Vec3> {
+    let low = vec3(-0.5 * tank.x, 0.0, -0.5 * tank.z);
+    let high = low + vec3(dam.x, dam.y, tank.z);
+    lattice(low + radius, high - radius, 2.0 * radius)
+}
+
+/// Points from `low` to `high`, both included where they are a multiple of `spacing` apart.
+pub fn lattice(low: Vec3, high: Vec3, spacing: f32) -> Vec<Vec3> {
+    let steps = ((high - low) / spacing + 1e-3).floor().as_ivec3();
+    let mut points = Vec::new();
+    for x in 0..=steps.x {
+        for y in 0..=steps.y {
+            for z in 0..=steps.z {
+                points.push(low + ivec3(x, y, z).as_vec3() * spacing);
+            }
+        }
+    }
+    points
+}
+
+/// The mantle of an upright cylinder (foot, radius), in particles of `radius`.
+pub fn cylinder((foot, size): (Vec2, f32), height: f32, radius: f32) -> Vec<Vec3> {
+    let around = (TAU * size / (2.0 * radius)).ceil() as u32;
+    let up = (height / (2.0 * radius)).ceil() as u32;
+    let mut points = Vec::new();
+    for i in 0..around {
+        let angle = TAU * i as f32 / around as f32;
+        let side = foot + (size - radius) * Vec2::from_angle(angle);
+        points.extend((0..up).map(|j| vec3(side.x, (2 * j + 1) as f32 * radius, side.y)));
+    }
+    points
 }
 
 #[cfg(test)]

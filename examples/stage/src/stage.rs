@@ -1,4 +1,4 @@
-//! The picture that stands in for the window, and what has to be known about the GPU's complaints.
+//! The picture that replaces the window, and the record of the GPU's validation errors.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -38,7 +38,7 @@ impl Stage {
     }
 }
 
-/// What wgpu's validation has reported so far, in order.
+/// All errors that wgpu's validation has reported so far, in order.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct GpuErrors(Arc<Mutex<Vec<String>>>);
 
@@ -62,7 +62,7 @@ impl GpuErrors {
     }
 }
 
-/// Puts up the [`Stage`], points cameras at it and listens to the GPU.
+/// Sets up the [`Stage`], points cameras at it and records the GPU's errors.
 pub(crate) struct StagePlugin {
     pub(crate) size: UVec2,
 }
@@ -85,8 +85,8 @@ impl Plugin for StagePlugin {
         .add_observer(render_to_the_stage);
     }
 
-    /// Bevy has by now installed a handler of its own, which stops rendering on the first error
-    /// but hands it to nobody; this one replaces it.
+    /// Replaces the handler that Bevy has installed by now, which stops rendering on the first
+    /// error but does not report it.
     fn finish(&self, app: &mut App) {
         let world = app.world();
         if let Some(device) = world.get_resource::<RenderDevice>() {

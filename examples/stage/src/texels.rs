@@ -15,11 +15,11 @@ pub struct TextureData {
     pub bytes: Vec<u8>,
 }
 
-/// Texels by their place, `(0, 0)` the upper left.
+/// Texels by position; `(0, 0)` is the upper left.
 ///
 /// # Panics
-/// These panic, as indexing does, outside the texture and where the type asked for is not as large
-/// as a texel.
+/// These methods panic, as indexing does, outside the texture and if the requested type is not as
+/// large as a texel.
 impl TextureData {
     /// The texel as any plain type of its size.
     pub fn texel<T: AnyBitPattern>(&self, x: u32, y: u32) -> T {

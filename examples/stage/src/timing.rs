@@ -1,14 +1,14 @@
-//! How long the GPU took.
+//! GPU times.
 
 use bevy::{
     diagnostic::{DiagnosticPath, DiagnosticsStore},
     prelude::*,
 };
 
-/// The median GPU time of a span over the frames that Bevy remembers (120), in milliseconds.
+/// The median GPU time of a span over the frames that Bevy keeps (120), in milliseconds.
 ///
-/// `path` is as in `render/main_opaque_pass_3d/elapsed_gpu`; `None` where no frame has recorded it,
-/// as on adapters without timestamp queries.
+/// `path` is as in `render/main_opaque_pass_3d/elapsed_gpu`; `None` if no frame has recorded it, as
+/// on adapters without timestamp queries.
 pub fn median_gpu_ms(app: &App, path: &str) -> Option<f64> {
     let store = app.world().get_resource::<DiagnosticsStore>()?;
     let mut times: Vec<f64> = store

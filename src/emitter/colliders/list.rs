@@ -1,4 +1,4 @@
-//! All colliders, to be asked which are near.
+//! Colliders and their lookup.
 
 use bevy::{
     math::{Vec3A, bounding::Aabb3d},
@@ -30,14 +30,14 @@ impl Default for Colliders {
     }
 }
 
-/// A box that nothing is in.
+/// An empty box.
 const NOWHERE: Aabb3d = Aabb3d {
     min: Vec3A::INFINITY,
     max: Vec3A::NEG_INFINITY,
 };
 
 impl Colliders {
-    /// Lists all as they are during this step.
+    /// Collects all colliders of this step.
     pub(in crate::emitter) fn gather(
         &mut self,
         colliders: &mut Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
@@ -69,8 +69,8 @@ impl Colliders {
         &self.list
     }
 
-    /// Whether a ball of `radius` may touch any on its straight way. Never wrong about those that
-    /// do.
+    /// Whether a ball of `radius` may touch any collider on its straight path. May be true for a
+    /// miss, never false for a hit.
     #[inline]
     pub(in crate::emitter) fn any_near(&self, start: Vec3A, end: Vec3A, radius: f32) -> bool {
         let is_near = |collider: &Collider| collider.is_near(start, end, radius);

@@ -1,4 +1,4 @@
-//! What particles bounce off.
+//! Solids that particles bounce off.
 
 mod list;
 mod moving;
@@ -12,12 +12,11 @@ pub(super) use self::{
 use crate::range::SettingRange;
 
 /// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
-/// follows its entity: the scale of the transform counts, and a collider that moves or turns takes
-/// particles along. It is made from a shape of Bevy's, or by [`ground`](Self::ground).
+/// follows the transform of its entity, scale included; a collider that moves or turns carries
+/// particles along. Create it from one of Bevy's shapes, or by [`ground`](Self::ground).
 ///
-/// Particles touch it with their radius. One that is narrowly wedged between two solids may be pressed
-/// into one of them. Values out of their range are said once in the log and taken as the nearest that
-/// is in range.
+/// Particles collide as balls of their radius. A particle that is narrowly wedged between two
+/// solids may be pressed into one of them. Values out of range are logged once and clamped.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -35,14 +34,14 @@ use crate::range::SettingRange;
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Transform, ColliderPath)]
 pub struct ParticleCollider {
-    /// What it looks like. Default: the ground.
+    /// Its shape. Default: the ground.
     pub shape: ColliderShape,
-    /// Share of the speed, across the surface, that is left after a bounce. Range 0..=1, default 0.2.
-    /// Higher: particles bounce; 0: they stay on it.
+    /// Restitution: share of the speed across the surface that is left after a bounce. Range 0..=1,
+    /// default 0.2. Higher: particles bounce more; 0: they stay on it.
     #[reflect(@SettingRange::new(0.0, 1.0))]
     pub restitution: f32,
-    /// Force along the surface over force across it, at most (Coulomb's coefficient). Range 0..=1000,
-    /// default 0.2. Higher: particles stop sooner and stay on steeper slopes.
+    /// Coulomb's friction coefficient: maximum ratio of the force along the surface to that across
+    /// it. Range 0..=1000, default 0.2. Higher: particles stop sooner and stay on steeper slopes.
     #[reflect(@SettingRange::new(0.0, 1e3).logarithmic())]
     pub friction: f32,
 }
@@ -51,29 +50,28 @@ pub struct ParticleCollider {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum ColliderShape {
-    /// All that is below the xz plane.
+    /// Everything below the xz plane.
     #[default]
     Ground,
-    /// A ball about the origin. Under a scale that is not the same along all axes, the greatest
-    /// counts.
+    /// A ball around the origin. Of a non-uniform scale, the greatest component applies.
     Sphere {
         /// Unit: m, range 0..=1e6.
         #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         radius: f32,
     },
-    /// A box about the origin, along the axes.
+    /// An axis-aligned box around the origin.
     Cuboid {
-        /// Half of its sides. Unit: m, range 0..=1e6 each.
+        /// Half of its side lengths. Unit: m, range 0..=1e6 each.
         #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         half_size: Vec3,
     },
-    /// A cylinder along y with half a ball at each end. Of the scales along x and z the greater
-    /// counts for the radius.
+    /// A cylinder along y with a hemisphere at each end. The greater of the scales along x and z
+    /// applies to the radius.
     Capsule {
-        /// Of the cylinder and the balls. Unit: m, range 0..=1e6.
+        /// Radius of the cylinder and the hemispheres. Unit: m, range 0..=1e6.
         #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         radius: f32,
-        /// Half of the cylinder's length, the balls left out. Unit: m, range 0..=1e6.
+        /// Half of the cylinder's length, without the hemispheres. Unit: m, range 0..=1e6.
         #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
         half_length: f32,
     },
@@ -87,7 +85,7 @@ impl ParticleCollider {
         friction: 0.2,
     };
 
-    /// All that is below the entity's xz plane.
+    /// Everything below the entity's xz plane.
     pub const fn ground() -> Self {
         Self::DEFAULT
     }

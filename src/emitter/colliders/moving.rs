@@ -1,4 +1,4 @@
-//! Where a collider is in the course of a step.
+//! The motion of a collider during a step.
 
 use bevy::{
     math::{Affine3A, Mat3A, Vec3A, bounding::Aabb3d},
@@ -52,7 +52,7 @@ pub(super) enum Reach {
 }
 
 impl Collider {
-    /// `None` for a transform that leads nowhere.
+    /// `None` for a transform that is not finite or has no rotation.
     pub(super) fn new(
         collider: &ParticleCollider,
         transform: &GlobalTransform,
@@ -144,8 +144,8 @@ impl Collider {
         })
     }
 
-    /// Whether a ball of `radius` may touch it on its straight way. Cheap, and never wrong about
-    /// those that do.
+    /// Whether a ball of `radius` may touch it on its straight path. Cheap: may be true for a miss,
+    /// never false for a hit.
     #[inline]
     pub(in crate::emitter) fn is_near(&self, start: Vec3A, end: Vec3A, radius: f32) -> bool {
         match &self.reach {

@@ -1,4 +1,4 @@
-//! Values that are written in one word.
+//! Values that are written as one literal.
 
 use bevy::{prelude::*, reflect::PartialReflect};
 use core::time::Duration;

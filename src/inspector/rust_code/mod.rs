@@ -20,12 +20,12 @@ use bevy::{
 use self::literal::literal;
 pub use self::spawn::spawn_code;
 
-/// The Rust expression of a reflected value, laid out as `rustfmt` does it. Of structs with a
-/// registered `Default`, only the fields that differ from it are listed, and `..default()` stands
-/// for the rest. It compiles with Bevy's prelude and the value's types in scope.
+/// The Rust expression of a reflected value, formatted as by `rustfmt`. For structs with a
+/// registered `Default`, only the fields that differ from it are listed, with `..default()` for the
+/// rest. It compiles with Bevy's prelude and the value's types in scope.
 ///
-/// What has no literal, such as long lists and handles, is left to the default and noted in a
-/// comment; a value that has none itself is `default()`.
+/// Fields without a literal, such as long lists and handles, are left to the default and noted in a
+/// comment; a value without a literal is written as `default()`.
 ///
 /// ```
 /// use bevy::{prelude::*, reflect::TypeRegistry};
@@ -187,7 +187,7 @@ impl Body {
     }
 }
 
-/// What stands in the comment for a field without a literal.
+/// The comment for a field without a literal.
 fn what(field: &dyn PartialReflect) -> String {
     match field.reflect_ref() {
         ReflectRef::List(list) => format!("{} of them", list.len()),

@@ -1,4 +1,4 @@
-//! Entities and resources as the statements that make them.
+//! Entities and resources as the Rust statements that create them.
 
 use bevy::{
     ecs::reflect::{ReflectComponent, ReflectResource},
@@ -10,9 +10,10 @@ use core::any::TypeId;
 use super::Writer;
 use crate::FluidDebugView;
 
-/// The Rust statement that spawns an entity with the components of `types` that it has, each as
-/// [`rust_code`](super::rust_code) writes it. Its name, its place and whether it is a camera belong to
-/// it. A resource is inserted. It stands in a system that has `mut commands: Commands`.
+/// The Rust statement that spawns an entity with those of its components that are in `types`, each
+/// as [`rust_code`](super::rust_code) writes it. The entity's name, its transform and its
+/// `Camera3d` are included. For a resource, the statement inserts it. The code is for a system with
+/// `mut commands: Commands`.
 ///
 /// ```
 /// use bevy::{prelude::*, reflect::TypeRegistry};
@@ -47,7 +48,7 @@ pub fn spawn_code(entity: EntityRef, types: &[TypeId], registry: &TypeRegistry) 
     if entity.contains::<Camera3d>() {
         parts.push("Camera3d::default()".into());
     }
-    // What is seen beside the settings.
+    // Visible properties other than the settings.
     let place = entity.get::<Transform>();
     if let Some(place) = place.filter(|place| **place != Transform::IDENTITY) {
         parts.extend(Writer { registry }.expression(place, 1));

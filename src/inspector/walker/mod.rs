@@ -142,7 +142,7 @@ impl Walker<'_> {
             .inner
     }
 
-    /// What stands in the row of a value with parts: a list of its variants or presets.
+    /// The widget in the row of a value with parts: a list of its variants or presets.
     fn choice(
         &self,
         ui: &mut Ui,
@@ -212,7 +212,7 @@ fn has_widget(value: &dyn PartialReflect) -> bool {
     id.is_some_and(|id| wholes.contains(&id)) || is_handle(value)
 }
 
-/// Whether a value stands for an asset: its variants are nobody's choice.
+/// Whether a value is a handle to an asset, whose variants are not to be chosen.
 fn is_handle(value: &dyn PartialReflect) -> bool {
     let paths = value
         .get_represented_type_info()

@@ -58,8 +58,8 @@ impl Walker<'_> {
             .is_ok()
     }
 
-    /// Rows for what a variant holds. A variant's only part goes by the variant's name: the
-    /// struct in it, if it is one, is no step of its own.
+    /// Rows for what a variant holds. A variant's only part has the variant's name; a struct in it
+    /// gets no level of its own.
     pub(super) fn variant_parts(
         &self,
         ui: &mut Ui,
@@ -122,8 +122,8 @@ impl Walker<'_> {
         edited
     }
 
-    /// What a variant holds when it is chosen; `None` where some part has no first value. `range`
-    /// is that of an option's field, and holds for what is in the option.
+    /// The initial content of a variant; `None` where some part has no first value. `range` is that
+    /// of an option's field, and holds for what is in the option.
     fn new_variant(
         &self,
         variant: &VariantInfo,

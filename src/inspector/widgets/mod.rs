@@ -1,4 +1,4 @@
-//! What a single value is edited with, and the columns that all rows share.
+//! Widgets for single values, and the columns that all rows share.
 
 mod leaf;
 mod number;
@@ -26,7 +26,7 @@ pub(super) const COPY: f32 = 24.0;
 /// All of them.
 pub(super) const WIDTH: f32 = LABEL + GAP + VALUE + GAP + RESET;
 
-/// What is known of a value beside itself.
+/// The metadata of a value.
 #[derive(Clone, Copy)]
 pub(super) struct Field<'a> {
     pub(super) name: &'a str,
@@ -43,7 +43,7 @@ pub(super) struct RowOutput {
 }
 
 /// A row: the name with its explanation, the widgets, and a button that resets, where there is
-/// something to reset. The widgets get the label's id, for those who hear the window.
+/// something to reset. The widgets get the label's id, for screen readers.
 pub(super) fn row(
     ui: &mut Ui,
     field: Field,
@@ -93,7 +93,7 @@ fn reset_button(ui: &mut Ui, name: &str) -> bool {
     response.clicked()
 }
 
-/// A button that copies all settings of what is shown. It was pressed.
+/// A button that copies all settings of the entity shown. Whether it was pressed.
 pub(super) fn copy_button(ui: &mut Ui, kind: &str) -> bool {
     let response = ui.button("Copy").on_hover_text("all of it as Rust code");
     let name = format!("copy {}", words(kind));

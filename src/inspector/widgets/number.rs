@@ -1,4 +1,4 @@
-//! Numbers, and what is made of several.
+//! Numbers, vectors and colours.
 
 use bevy::prelude::*;
 use bevy_egui::egui::{DragValue, Id, RichText, Slider, SliderClamping, Ui};

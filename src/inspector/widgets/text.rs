@@ -49,7 +49,7 @@ pub(super) fn plain(docs: &str) -> String {
     plain + rest
 }
 
-/// Four digits that count, and no more than needed: what does not fit would make the row jump.
+/// Up to four significant digits: a longer text would make the row jump.
 pub(in crate::inspector) fn digits(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !value.is_finite() {

@@ -1,4 +1,4 @@
-//! The window: times, then the camera with its settings, then the fluid with its.
+//! The window: times, then the camera and its settings, then the fluid and its settings.
 
 mod counts;
 mod debug_view;
@@ -136,7 +136,8 @@ fn contents(
     }
 }
 
-/// A list of entities by name; what is chosen, or the first, which can be copied as code.
+/// A list of entities by name, with a button that copies the chosen one as code. Returns the chosen
+/// entity, or the first.
 fn choose(
     ui: &mut Ui,
     kind: &str,

@@ -47,7 +47,7 @@ pub(super) fn component(
     widgets::explained(header.header_response, info.docs());
 }
 
-/// What one looks for first.
+/// Whether a section is open at first.
 fn opens(id: TypeId) -> bool {
     id == TypeId::of::<ScreenSpaceFluid>() || id == TypeId::of::<FluidMaterial>()
 }

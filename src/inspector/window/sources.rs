@@ -1,4 +1,4 @@
-//! What recordings and live simulation say of themselves: lines to read, none to set.
+//! The status of recordings and of live simulation: read-only lines.
 
 use bevy::prelude::*;
 use bevy_egui::egui::{CollapsingHeader, RichText, Ui};
@@ -35,7 +35,7 @@ pub(super) fn recordings(ui: &mut Ui, world: &World, fluid: Entity) {
     }
 }
 
-/// How live simulation goes.
+/// The status of live simulation.
 #[cfg(feature = "salva")]
 pub(super) fn live(ui: &mut Ui, world: &World) {
     let Some(status) = world.get_resource::<crate::salva::SalvaStatus>() else {

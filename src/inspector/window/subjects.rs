@@ -1,4 +1,4 @@
-//! What there is to show.
+//! Entities and resources to show.
 
 use bevy::{ecs::reflect::ReflectResource, prelude::*, reflect::TypeRegistry};
 

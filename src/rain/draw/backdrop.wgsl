@@ -1,5 +1,5 @@
-// What rain beyond the streaks takes from the scene behind it, and what it sends; and what of it is
-// seen so steeply that drops are points.
+// Extinction and radiance of the rain beyond the streaks, and of rain seen so steeply that drops
+// are points.
 
 #import bevy_fluid::rain::draw::common::{over, rain, scene_view_depth, surroundings, view}
 #import bevy_fluid::rain::draw::types::STEEPEST
@@ -23,7 +23,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let ray = view_ray(position.xy);
     let scene = scene_view_depth(position.xy) / max(dot(ray, rain.forward), 1e-4);
     let beyond = clamp(scene, rain.distance, max(rain.extent, rain.distance)) - rain.distance;
-    // Of the way before that: where drops are drawn one by one, and where billboards are.
+    // Within `distance`: the stretch of individually drawn drops, and that of billboards.
     let along = dot(ray, rain.axis);
     let across = sqrt(max(1.0 - along * along, 0.0));
     let before = min(scene, rain.distance);

@@ -1,4 +1,4 @@
-// Streaks of the drops in a voxel, on a billboard that stands along the fall and faces the eye.
+// Streaks of the drops in a voxel, on a billboard that is aligned with the fall and faces the eye.
 
 #import bevy_fluid::rain::draw::common::{
     clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
@@ -9,7 +9,7 @@
 struct Varying {
     @builtin(position) clip: vec4<f32>,
     @location(0) position: vec3<f32>,
-    // In the textures, from the voxel's own tile on. Unit: m.
+    // Place in the textures, from the voxel's own tile on. Unit: m.
     @location(1) place: vec2<f32>,
     @location(2) light: vec3<f32>,
     @location(3) @interpolate(flat) inverse_radius: f32,
@@ -21,8 +21,8 @@ struct Varying {
 
 // Opacities below this change no pixel.
 const LEAST: f32 = 1e-6;
-// Drops that are seen more steeply than this are lit as if they were nearer to their billboard, and so
-// by the lamps that reach it (see `lattice.rs`).
+// Drops seen more steeply than this are lit as if they were nearer to their billboard, and so by
+// the lamps that reach it (see `lattice.rs`).
 const LEAST_ACROSS: f32 = 0.7;
 
 @vertex
@@ -51,7 +51,7 @@ fn hash_of_tile(in: Varying) -> u32 {
     return (u32(tile.y) * 0x9E3779B1u) ^ (u32(tile.x) * 0x85EBCA77u) ^ in.hash;
 }
 
-// Opacity of a cubic voxel's drops, before what of it counts.
+// Opacity of the drops in a whole cubic voxel.
 fn opacity_of_streaks(in: Varying, mip: f32) -> f32 {
     let variant = (hash_of_tile(in) >> 27u) % VARIANTS;
     let texel = textureSampleLevel(
@@ -66,9 +66,10 @@ fn within(level: GpuRainLevel, at: f32, end: f32) -> f32 {
     return max(min(at + 0.5 * level.size, min(level.end, end)) - low, 0.0);
 }
 
-// How much of the way stands for a voxel at a distance. Those across an end of the level are not drawn,
-// for half as much to fill; their mirror images within count for them. Parallel rays all meet the same
-// voxels: there they fade at the ends, and only those that the near plane cuts off are mirrored.
+// Length of the ray that a voxel at a distance represents. Voxels across an end of the level are
+// not drawn, which halves the fill there; their mirror images within the level count for them.
+// Parallel rays all meet the same voxels: there they fade at the ends, and only those that the near
+// plane cuts off are mirrored.
 fn part_of_voxel(level: GpuRainLevel, at: f32, end: f32) -> f32 {
     let whole = within(level, at, end);
     let mirrored = whole + within(level, 2.0 * level.start - at, end)
@@ -78,9 +79,9 @@ fn part_of_voxel(level: GpuRainLevel, at: f32, end: f32) -> f32 {
     return mix(faded, select(0.0, mirrored, is_inside), f32(rain.perspective));
 }
 
-// Where on its ray the drop that is seen is between two distances across the fall: every stretch of a
-// column of texels, as long as a streak, has a place of its own, and falls with it. All at the
-// billboard, a lamp's cone would be the disc that it cuts out of it.
+// Position on the ray of the visible drop, between two distances across the fall: every stretch of
+// a column of texels, as long as a streak, has its own depth and falls with it. If all drops were
+// on the billboard, a lamp's cone would appear as a disc, its cross section with the billboard.
 fn drop_position(in: Varying, ray: vec3<f32>, across: f32, at: f32, ends: vec2<f32>, mip: f32) -> vec3<f32> {
 #ifdef LAMPS_OR_SHELTERS
     let column = pcg(hash_of_tile(in) ^ u32(in.place.x * STREAK_TEXELS.x * exp2(-round(mip))));
@@ -102,7 +103,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let across = sqrt(max(1.0 - along * along, 0.0));
     let inverse_steepness = 1.0 / max(across, STEEPEST);
     let distance = across * select(view_depth, sqrt(square), rain.perspective == 1u);
-    // The part of the voxel that is before the scene, within the level's range and in sight.
+    // The part of the voxel that is in front of the scene, within the level's range and in sight.
     let level = rain.levels[in.level];
     let scene = distance * scene_view_depth(in.clip.xy) / max(view_depth, 1e-4);
     let end = min(rain.distance * across, scene);
@@ -112,7 +113,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     }
     let texels = max(STREAK_TEXELS.x, STREAK_TEXELS.y * inverse_steepness);
     let mip = log2(max(texels * metres_per_pixel(view_depth), 1.0));
-    // Off the billboard's middle, fewer billboards are met at an angle than straight ahead.
+    // Off the billboard's middle, rays meet fewer billboards at an angle than straight ahead.
     let facing = select(1.0, min(distance * in.inverse_radius, 4.0), rain.perspective == 1u);
     let counts = part * level.inverse_size * facing * rain.axis.y * inverse_steepness;
     let opacity = min(opacity_of_streaks(in, mip) * counts, 1.0);

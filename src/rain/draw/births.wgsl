@@ -1,4 +1,4 @@
-// Which drops there are at one rate of rain and at another: see `births.rs`.
+// The drops present at each rain rate: see `births.rs`.
 #define_import_path bevy_fluid::rain::draw::births
 
 // Drops per m³ and mm of diameter.

@@ -1,4 +1,4 @@
-//! What happens while Bevy draws the view.
+//! Render commands that run while Bevy draws the view.
 
 use bevy::{
     core_pipeline::core_3d::Transparent3d,
@@ -27,7 +27,7 @@ use super::{
     view::RainQuads,
 };
 
-/// The scene's depth with the liquids in it, before transparent things are drawn.
+/// Copies the scene's depth, including liquids, before transparent objects are drawn.
 pub(crate) fn copy_scene_depth(
     view: ViewQuery<(&RainQuads, &ViewDepthTexture, &ExtractedCamera)>,
     mut ctx: RenderContext,

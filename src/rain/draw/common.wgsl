@@ -1,4 +1,4 @@
-// What all that is drawn of rain sees, and the light on it.
+// Bindings and lighting shared by all parts of rain.
 #define_import_path bevy_fluid::rain::draw::common
 
 #import bevy_fluid::rain::draw::types::GpuRain
@@ -20,7 +20,7 @@ const PI: f32 = 3.14159265;
 // Farther than any scene.
 const FAR: f32 = 1e9;
 
-// A hash (Jarzynski and Olano 2020). Its name is that of no field: imports would rename those.
+// A hash (Jarzynski and Olano 2020). No field may have its name: imports would rename it.
 fn pcg(seed: u32) -> u32 {
     let state = seed * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -76,14 +76,14 @@ fn environment(direction: vec3<f32>) -> vec3<f32> {
     return textureSampleLevel(environment_map, environment_sampler, to_map, level).rgb;
 }
 
-// Radiance of drops in what comes from all around: mostly what lies behind them.
+// Radiance of drops lit from all around: mostly light from behind them.
 fn surroundings(direction: vec3<f32>) -> vec3<f32> {
-    // Where there is no map its intensity is 0.
+    // Without a map the intensity is 0.
     return rain.ambient + rain.environment_intensity * environment(direction);
 }
 
-// Radiance of drops at a position in the light of lamps and suns: what a surface that faces them
-// would receive, times the phase function. Falloff, cone and range are Bevy's.
+// Radiance of drops at a position, lit by lamps and suns: the illuminance of a surface that faces
+// them, times the phase function. Falloff, cone and range are Bevy's.
 fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
     var light = vec3(0.0);
 #ifdef SUNS
@@ -109,7 +109,7 @@ fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
     return light;
 }
 
-// Whether a shelter is on the way from which drops come.
+// Whether a shelter lies above a position, along the fall of the drops.
 fn is_sheltered(position: vec3<f32>) -> bool {
 #ifdef SHELTERS
     for (var i = 0u; i < rain.shelter_count; i += 1u) {
@@ -131,7 +131,7 @@ fn is_sheltered(position: vec3<f32>) -> bool {
     return false;
 }
 
-// Premultiplied, to be put over what is there.
+// Premultiplied colour, blended over the target.
 fn over(radiance: vec3<f32>, opacity: f32) -> vec4<f32> {
     return vec4(radiance * (opacity * view.exposure * rain.brightness), opacity);
 }

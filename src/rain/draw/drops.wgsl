@@ -1,5 +1,5 @@
-// Every drop by itself, as an antialiased streak: near the eye, where drops are told apart, and
-// everywhere as the truth that billboards are measured against.
+// Individually drawn drops, as antialiased streaks: near the eye, where drops can be distinguished,
+// or everywhere, as the reference for billboards.
 
 #import bevy_fluid::rain::draw::births::diameter_of_birth
 #import bevy_fluid::rain::draw::common::{
@@ -19,8 +19,8 @@ struct Varying {
     @location(4) @interpolate(flat) view_depth: f32,
 }
 
-// What is drawn around a streak, in pixels: half a pixel for its soft edge, and as far as samples lie
-// off the pixel's centre, where its opacity is taken for all of them.
+// Margin around a streak, in pixels: half a pixel for its soft edge; with multisampling, also the
+// distance of samples from the pixel's centre, whose opacity is used for all of them.
 #ifdef MULTISAMPLED
 const EDGE: f32 = 1.2;
 #else
@@ -46,7 +46,7 @@ fn nothing() -> Varying {
 fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let slot = pcg(cell.hash ^ pcg((index / 4u) ^ pcg(rain.seed)));
     let volume = cell.size * cell.size * cell.size;
-    // The first slots are for the drops that come first as rain grows denser.
+    // The first slots hold the drops that are added first as rain grows denser.
     let birth = (f32(index / 4u) + uniform_of(pcg(slot ^ 0x85157AF5u))) / volume;
     let random = vec3(
         uniform_of(slot), uniform_of(pcg(slot ^ 0x3C6EF372u)), uniform_of(pcg(slot ^ 0xDAA66D2Bu)),
@@ -54,18 +54,18 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let diameter = min(diameter_of_birth(birth, random), LARGEST);
     let falls = speed(diameter);
     let start = uniform_of(pcg(slot ^ 0x68E31DA4u));
-    // A copy of the drop stands in every cell of its way; which one is in this cell by now?
+    // Every cell on the drop's path holds a copy of it; this selects the one now in this cell.
     let row = i32(round((f32(cell.tile) + cell.fraction) / cell.size));
     let fallen = falls * rain.seconds / cell.size;
     let left = start - fract(fallen);
     let height = fract(left);
     let copy = pcg(slot ^ pcg(u32(row + i32(floor(fallen)) - i32(floor(left)))));
-    // The last one is there as often as it takes for the mean.
+    // The last drop is present with the probability that gives the mean number.
     if f32(index / 4u) + uniform_of(pcg(copy ^ 0x1B56C4E9u)) >= rain.drops * volume {
         return nothing();
     }
-    // Columns of cells lean as drops of mean speed fall. What is faster or slower drifts through
-    // its column, in at one side as it goes out at the other.
+    // Columns of cells lean as drops of mean speed fall. A faster or slower drop drifts through its
+    // column, entering on one side as it leaves on the other.
     let drift = rain.drift * (1.0 - falls / rain.mean_speed) / cell.size;
     let sideways = fract(vec2(uniform_of(copy), uniform_of(pcg(copy ^ 0xB5297A4Du))) + drift) - 0.5;
     let head = cell.center + (vec3(sideways.x, 0.0, sideways.y)
@@ -77,7 +77,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let a = clip_from_relative(head);
     let b = clip_from_relative(tail);
     let view_depth = dot(middle, rain.forward);
-    // As billboards count: across the fall, and along the ray.
+    // Distances as for billboards: across the fall, and along the ray.
     let off = middle - dot(middle, rain.axis) * rain.axis;
     let along_view = dot(rain.forward, rain.axis);
     let is_perspective = rain.perspective == 1u;
@@ -100,8 +100,8 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
 
     var out: Varying;
     out.half_size = 0.5 * size;
-    // Its cross section, spread over what it covers. Off the middle of the view, the screen is met
-    // at an angle, and it covers more of it.
+    // The drop's cross section, spread over the covered pixels. Off the middle of the view, rays
+    // meet the screen at an angle, and the drop covers more of it.
     let slant = select(1.0, length(middle) / view_depth, rain.perspective == 1u);
     out.opacity = 0.25 * PI * drop * drop * slant / (size.x * size.y);
     out.view_depth = view_depth;

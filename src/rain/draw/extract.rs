@@ -1,4 +1,4 @@
-//! What the render world takes over each frame.
+//! Extraction of rain into the render world.
 
 use bevy::{
     light::Skybox,
@@ -17,7 +17,7 @@ impl SyncComponent for Rain {
     type Target = (ExtractedRain, RainQuads);
 }
 
-/// A camera's rain. Cameras without any, or with a rate of 0, have none of this.
+/// A camera's rain. Cameras without rain, or with a rate of 0, lack this component.
 #[doc(hidden)]
 #[derive(Component, Clone)]
 #[require(RainQuads)]
@@ -30,7 +30,7 @@ pub struct ExtractedRain {
     pub(crate) environment: Option<EnvironmentMap>,
 }
 
-/// A cubemap of what is far away.
+/// A cubemap of the distant surroundings.
 #[derive(Clone, Copy)]
 pub(crate) struct EnvironmentMap {
     pub(crate) image: AssetId<Image>,
@@ -40,8 +40,8 @@ pub(crate) struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    /// Of a map made for diffuse light rather than of the sky itself, for a drop gathers light from
-    /// a wide cone.
+    /// Prefers the map for diffuse light to the sky itself, since a drop gathers light from a wide
+    /// cone.
     fn of(light: Option<&EnvironmentMapLight>, skybox: Option<&Skybox>) -> Option<Self> {
         let from_light = light.map(|light| Self {
             image: light.diffuse_map.id(),
@@ -109,7 +109,7 @@ pub(crate) fn extract_rain(
     }
 }
 
-/// Where it is dry.
+/// The boxes that keep rain off.
 #[derive(Resource, Default)]
 pub(crate) struct Shelters(pub(crate) Vec<(GlobalTransform, Vec3)>);
 

@@ -5,13 +5,13 @@ use bytemuck::{Pod, Zeroable};
 
 /// Sizes of voxels: see [`lattice::LEVELS`](super::lattice::LEVELS).
 pub(crate) const LEVEL_COUNT: usize = 4;
-/// Point and spot lights that light a view's rain; of more, those that are brightest at the camera.
+/// Maximum number of point and spot lights for a view's rain: those brightest at the camera.
 pub(crate) const MAX_LIGHTS: usize = 32;
-/// Directional lights that light rain.
+/// Maximum number of directional lights for rain.
 pub(crate) const MAX_SUNS: usize = 4;
-/// Shelters that keep rain off, the nearest to the camera.
+/// Maximum number of shelters: those nearest to the camera.
 pub(crate) const MAX_SHELTERS: usize = 8;
-/// Terminal speeds in steps of 0.1 mm, four to a vector.
+/// Terminal velocities in steps of 0.1 mm, four to a vector.
 pub(crate) const SPEED_VECTORS: usize = 16;
 
 #[derive(Clone, Copy, Default, ShaderType)]

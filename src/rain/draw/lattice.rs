@@ -1,5 +1,5 @@
-//! Which voxels around the eye are drawn. They stand still in the world but for the wind; only what
-//! they show falls. So the camera may move at any speed.
+//! Selection of the voxels around the eye. Voxels are fixed in the world except for the wind; only
+//! their contents fall. So the camera may move at any speed.
 
 use bevy::{math::DVec3, prelude::*};
 
@@ -11,7 +11,7 @@ use crate::rain::clock::RainClock;
 pub(crate) struct Level {
     /// Side of a voxel. Unit: m.
     pub(crate) size: f32,
-    /// The distances from the eye, across the fall, for which they stand. Unit: m.
+    /// The range of distances from the eye, across the fall, that they represent. Unit: m.
     pub(crate) start: f32,
     pub(crate) end: f32,
 }
@@ -20,21 +20,21 @@ const fn level(size: f32, start: f32, end: f32) -> Level {
     Level { size, start, end }
 }
 
-/// Up to here, across the fall, a perspective view shows every drop by itself: there streaks are told
-/// apart, and drops of a size fall at a speed of their own. Unit: m.
+/// Distance across the fall up to which a perspective view draws every drop individually: there
+/// streaks can be distinguished, and each drop falls at the speed of its size. Unit: m.
 pub(crate) const NEAR: f32 = 2.0;
 
-/// So far along the fall, for there is no end of [`NEAR`]: seen along it, drops are points, which fade
-/// (see `backdrop.wgsl`). Unit: m.
+/// Largest distance of individually drawn drops in any direction, since [`NEAR`] has no end along
+/// the fall: seen along it, drops are points, which fade (see `backdrop.wgsl`). Unit: m.
 pub(crate) const NEAR_REACH: f32 = 8.0;
 
-/// Sine of the angle between a ray and the fall: nearer to it, streaks are points, and their opacity
-/// grows no more. Parallel rays so steep meet no billboards at all.
+/// Sine of the angle between a ray and the fall below which streaks are points and their opacity no
+/// longer grows. Parallel rays this steep meet no billboards at all.
 pub(crate) const STEEPEST: f32 = 0.15;
 
-/// Voxels of streaks, from [`NEAR`] on, or from the eye on where all rays are parallel. A voxel shows
-/// its drops as if all were at its middle; where a level ends, voxels before the end stand for what
-/// reaches in from behind it (see `part_of_voxel` in `billboards.wgsl`).
+/// Voxels of streaks, from [`NEAR`] on, or from the eye on where all rays are parallel. A voxel
+/// shows its drops as if all were at its middle; where a level ends, voxels before the end also
+/// represent those that reach in from behind it (see `part_of_voxel` in `billboards.wgsl`).
 pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
     level(2.0, NEAR, 6.0),
     level(4.0, 6.0, 14.0),
@@ -42,31 +42,31 @@ pub(crate) const LEVELS: [Level; LEVEL_COUNT] = [
     level(16.0, 30.0, 126.0),
 ];
 
-/// Cells of drops one by one: small ones, for few drops are drawn beyond the view.
+/// Cells of individually drawn drops: small, so that few drops out of view are processed.
 pub(crate) const NEAR_CELLS: Level = level(0.25, 0.0, NEAR);
-/// The same however far away they are: larger ones, for they are many.
+/// The same at any distance: larger, because there are many.
 pub(crate) const ALL_CELLS: Level = level(1.0, 0.0, f32::INFINITY);
 
-/// More than this are not drawn: only a very wide orthographic view asks for them.
+/// Maximum number of voxels drawn; only a very wide orthographic view needs more.
 pub(crate) const MAX_QUADS: usize = 1 << 16;
 
-/// What sees the voxels.
+/// The viewpoint and the visible volume.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Eye {
     pub(crate) position: DVec3,
     pub(crate) forward: Vec3,
     pub(crate) perspective: bool,
-    /// Sine of the angle between the way it looks and the fall.
+    /// Sine of the angle between the view direction and the fall.
     steepness: f32,
     /// Planes with normals to the inside, relative to the eye.
     planes: [Vec4; 4],
-    /// A box around what is seen up to the distance, relative to the eye.
+    /// A box around the visible volume up to the distance, relative to the eye.
     low: Vec3,
     high: Vec3,
 }
 
 impl Eye {
-    /// Sees rain that falls along `axis`, up to the distance. `None` for matrices that make no sense.
+    /// The view of rain that falls along `axis`, up to the distance; `None` for invalid matrices.
     pub(crate) fn new(
         world_from_view: &GlobalTransform,
         clip_from_view: &Mat4,
@@ -90,7 +90,7 @@ impl Eye {
         let depth = if perspective {
             distance
         } else {
-            // Voxels across the end count in part, however steep the way there is.
+            // Voxels across the end count in part, however steep the ray there is.
             let steepness = steepness.max(STEEPEST);
             let last = LEVELS.iter().rfind(|level| level.start < distance);
             distance + 0.5 * last.map_or(0.0, |level| level.size) / steepness
@@ -133,7 +133,7 @@ impl Eye {
             && center.dot(self.forward) >= -radius
     }
 
-    /// Whether what is around a place comes near what is seen.
+    /// Whether a ball of radius `range` around a place reaches the visible volume.
     pub(crate) fn is_reached_from(&self, place: Vec3, range: f32) -> bool {
         place.distance_squared(place.clamp(self.low, self.high)) < range * range
     }
@@ -153,12 +153,12 @@ impl Eye {
     }
 }
 
-/// Where drops of mean speed come from: up, of unit length.
+/// Direction from which drops of mean speed fall: upwards, of unit length.
 pub(crate) fn fall_axis(lean: Vec2) -> Vec3 {
     vec3(-lean.x, 1.0, -lean.y).normalize()
 }
 
-/// What voxels hold.
+/// The contents of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Content {
     /// A billboard.
@@ -168,14 +168,14 @@ pub(crate) enum Content {
 }
 
 impl Content {
-    /// How far from a voxel's centre there is anything of it: the corners of a cube, stretched along
-    /// the fall, and what streaks are longer. Unit: m.
+    /// How far the contents of a voxel reach from its centre: the corners of a cube, stretched
+    /// along the fall, plus the length of streaks. Unit: m.
     pub(crate) fn reach(self, size: f32, axis: Vec3) -> f32 {
         0.87 * size / axis.y + self.longest()
     }
 
-    /// How far from a voxel's centre what is drawn of it may be lit from: drops on a billboard stand
-    /// for those before and behind it. Unit: m.
+    /// How far from a voxel's centre its drops may be lit: drops on a billboard represent those
+    /// before and behind it. Unit: m.
     pub(crate) fn lit_reach(self, size: f32, axis: Vec3) -> f32 {
         let depth = match self {
             Self::Streaks => 0.71 * size,
@@ -200,7 +200,7 @@ impl Content {
     }
 }
 
-/// Adds the voxels in view to `quads`, level by level. `keep` may refuse one or change it. Returns
+/// Adds the voxels in view to `quads`, level by level. `keep` may reject or change a voxel. Returns
 /// whether there were too many.
 pub(crate) fn add_voxels(
     quads: &mut Vec<GpuQuad>,
@@ -219,7 +219,7 @@ pub(crate) fn add_voxels(
         let size = f64::from(level.size);
         let cells =
             |low: f64, high: f64| (low / size).floor() as i64..=(high / size).floor() as i64;
-        // Around the eye, voxels are those in its distance.
+        // In perspective, only voxels within the distance count.
         let around = if eye.perspective {
             distance
         } else {
@@ -233,7 +233,7 @@ pub(crate) fn add_voxels(
         for y in heights {
             let center_y = (y as f64 + 0.5) * size;
             let relative_y = (center_y - eye.position.y) as f32;
-            // Where the column with index 0 stands at this height.
+            // Place of the column with index 0 at this height.
             let shift = clock.anchor - clock.lean.as_dvec2() * (center_y - clock.height);
             let shift = [shift.x - eye.position.x, shift.y - eye.position.z];
             let range = |side: usize| {
@@ -330,7 +330,7 @@ fn radius_in(
             Content::Drops(_) => (radius, radius - 1.42 * half, radius + 1.42 * half),
         }
     };
-    // Of its part of the level, and of what is in sight, some must be there.
+    // Some of it must be within the level and in sight.
     let within =
         nearest < level.end.min(distance + content.half(level.size)) && farthest > level.start;
     (within && eye.sees(center, content.reach(level.size, axis))).then_some(radius)

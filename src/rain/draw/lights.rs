@@ -1,4 +1,4 @@
-//! The scene's lights as rain sees them.
+//! The scene's lights, for rain.
 
 use bevy::{
     pbr::{ExtractedDirectionalLight, ExtractedPointLight},
@@ -25,7 +25,7 @@ struct NearLight {
 }
 
 impl NearLights {
-    /// The lights that reach what is seen; the first [`MAX_LIGHTS`] count.
+    /// Collects the lights that reach the visible volume; the first [`MAX_LIGHTS`] count.
     pub(crate) fn gather<'a>(
         &mut self,
         lights: impl Iterator<Item = &'a ExtractedPointLight>,
@@ -89,7 +89,7 @@ impl NearLight {
     }
 }
 
-/// As Bevy's own lighting has it: see `spot_light` in `bevy_pbr`'s `pbr_lighting.wgsl`.
+/// As in Bevy's own lighting: see `spot_light` in `bevy_pbr`'s `pbr_lighting.wgsl`.
 fn gpu_light(light: &ExtractedPointLight, position: Vec3) -> GpuRainLight {
     let (spot_scale, spot_offset) = light
         .spot_light_angles
@@ -107,7 +107,7 @@ fn gpu_light(light: &ExtractedPointLight, position: Vec3) -> GpuRainLight {
     }
 }
 
-/// The brightest [`MAX_SUNS`] directional lights, and how many they are.
+/// The brightest [`MAX_SUNS`] directional lights, and their number.
 pub(crate) fn suns<'a>(
     lights: impl Iterator<Item = &'a ExtractedDirectionalLight>,
 ) -> ([GpuRainSun; MAX_SUNS], u32) {

@@ -44,7 +44,7 @@ impl Plugin for RainDrawPlugin {
         embedded_asset!(app, "backdrop.wgsl");
         embedded_asset!(app, "billboards.wgsl");
         embedded_asset!(app, "drops.wgsl");
-        // What it syncs needs a renderer, if only to be despawned.
+        // Synced components need a renderer, if only to be despawned.
         if app.get_sub_app(RenderApp).is_some() {
             app.add_plugins(SyncComponentPlugin::<Rain>::default());
         }
@@ -66,7 +66,8 @@ impl Plugin for RainDrawPlugin {
             .add_systems(
                 Render,
                 (
-                    // After everything else is queued: whether it is alone decides how it is cut.
+                    // After everything else is queued: rain is cut into shells only where it is not
+                    // alone.
                     prepare::queue_rain
                         .in_set(RenderSystems::PhaseSort)
                         .before(sort_phase_system::<Transparent3d>),

@@ -1,4 +1,4 @@
-//! The pipelines, and what they share.
+//! The pipelines and their shared layouts.
 
 use bevy::{
     asset::load_embedded_asset,
@@ -24,14 +24,14 @@ use bevy::{
 
 use super::gpu_types::GpuRain;
 
-/// What is drawn.
+/// The parts of rain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum RainPart {
-    /// What fades beyond the streaks.
+    /// The fading background beyond the streaks.
     Backdrop,
     /// Voxels of streaks.
     Billboards,
-    /// Drops one by one.
+    /// Individually drawn drops.
     Drops,
 }
 
@@ -43,8 +43,8 @@ pub(crate) struct RainKey {
     pub(crate) scene: RainScene,
 }
 
-/// What of it there is in the scene. Shaders are made without what there is not: a loop over no lamps
-/// still costs, on a software renderer as much as all the rest.
+/// Which lights and shelters the scene has. Shaders are compiled without the others: a loop over no
+/// lamps still costs, on a software renderer as much as all the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RainScene {
     pub(crate) suns: bool,
@@ -104,7 +104,7 @@ pub(crate) fn init_rain_pipeline(mut commands: Commands, assets: Res<AssetServer
     });
 }
 
-/// Premultiplied colours, over what is there; the target's alpha stays.
+/// Premultiplied colours, blended over the target; the target's alpha is kept.
 const OVER: BlendState = BlendState {
     color: BlendComponent {
         src_factor: BlendFactor::One,
@@ -133,7 +133,7 @@ impl SpecializedRenderPipeline for RainPipeline {
             (suns, "SUNS"),
             (lamps, "LAMPS"),
             (shelters, "SHELTERS"),
-            // Where on its way a drop is makes a difference.
+            // The position of a drop on its ray matters.
             (lamps || shelters, "LAMPS_OR_SHELTERS"),
         ]
         .into_iter()
@@ -170,7 +170,7 @@ impl SpecializedRenderPipeline for RainPipeline {
                 topology,
                 ..default()
             },
-            // The shaders look at the scene's depth themselves: a voxel may reach before it.
+            // The shaders test the scene's depth themselves: a voxel may reach in front of it.
             depth_stencil: Some(DepthStencilState {
                 format: CORE_3D_DEPTH_FORMAT,
                 depth_write_enabled: Some(false),

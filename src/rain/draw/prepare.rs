@@ -1,4 +1,4 @@
-//! From the view to what its rain needs this frame.
+//! Preparation of each view's rain for a frame.
 
 use bevy::{
     camera::visibility::RenderLayers,
@@ -30,14 +30,14 @@ use super::{
     view::{MAX_SHELLS, Plan, RainBindGroup, RainQuads},
 };
 
-/// What all views share.
+/// Resources shared by all views.
 #[derive(Resource)]
 pub(crate) struct RainBuffers {
     pub(crate) uniforms: DynamicUniformBuffer<GpuRain>,
     /// Two triangles for every four vertices.
     pub(crate) drop_indices: Option<Buffer>,
-    /// Phases tell their items apart by entity; these stand for a view's shells, its backdrop and its
-    /// drops.
+    /// Phases distinguish their items by entity; these represent a view's shells, its backdrop and
+    /// its drops.
     pub(crate) items: [Entity; MAX_SHELLS + 2],
     near: NearLights,
 }
@@ -55,10 +55,10 @@ pub(crate) fn init_rain_buffers(mut commands: Commands) {
 /// Items of a view after its shells.
 pub(crate) const BACKDROP: usize = MAX_SHELLS;
 pub(crate) const DROPS: usize = MAX_SHELLS + 1;
-/// Denser rain than 200 mm/h is not asked for.
+/// Enough for 200 mm/h, the highest rate.
 const MAX_DROPS: u32 = 6000;
 
-/// Chooses the voxels and has them drawn among the transparent things.
+/// Selects the voxels and queues them among the transparent items.
 pub(crate) fn queue_rain(
     mut views: Query<(
         &ExtractedView,
@@ -113,8 +113,8 @@ pub(crate) fn queue_rain(
             gpu.environment_intensity = map.intensity;
         }
 
-        // Where nothing lights rain from all around, what no lamp reaches is dark: its faint shade
-        // is left out.
+        // Without light from all around, rain that no lamp reaches is dark: its faint shade is left
+        // out.
         let always = gpu.ambient != Vec3::ZERO
             || gpu.environment_intensity > 0.0
             || gpu.sun_count > 0
@@ -189,13 +189,13 @@ pub(crate) fn queue_rain(
                     };
                     pipelines.specialize(&cache, &pipeline, key)
                 };
-                // The backdrop is lit by what surrounds it alone.
+                // The backdrop is lit by the surroundings alone.
                 let wanted = of(if part == RainPart::Backdrop {
                     RainScene::NOTHING
                 } else {
                     scene
                 });
-                // When the first lamp comes, rain must not be gone until its shader is compiled.
+                // When the first lamp appears, rain must not vanish until its shader is compiled.
                 match cache.get_render_pipeline(wanted) {
                     Some(_) => wanted,
                     None => of(RainScene::ALL),
@@ -225,7 +225,7 @@ pub(crate) fn queue_rain(
             add(shell_index, shell.distance, billboards);
         }
         if !quads.cells.is_empty() && quads.drop_indices > 0 {
-            // At the middle of the air that they fill.
+            // At the middle of the volume that they fill.
             add(DROPS, 0.75 * plan.drops_end.min(rain.distance), drops);
         }
     }

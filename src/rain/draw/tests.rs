@@ -1,5 +1,5 @@
-//! Every shader variant composes, validates and makes a pipeline; GPU twins are as large as they say;
-//! a steady frame allocates nothing.
+//! Every shader variant composes, validates and makes a pipeline; GPU twins have the right size; a
+//! steady frame allocates nothing.
 
 use bevy::{
     core_pipeline::core_3d::Transparent3d,
@@ -70,7 +70,7 @@ fn every_part_of_rain_is_made() {
     }
 }
 
-/// What WGSL repeats of Rust's numbers.
+/// Constants that WGSL repeats from Rust.
 #[test]
 fn shaders_know_the_same_numbers() {
     let (types, births) = (include_str!("types.wgsl"), include_str!("births.wgsl"));
@@ -87,7 +87,7 @@ fn shaders_know_the_same_numbers() {
     assert_eq!(size_of::<GpuQuad>(), 40);
 }
 
-/// With all that a frame may have: lamps, suns, shelters.
+/// With everything that a frame may have: lamps, suns, shelters.
 #[test]
 fn a_steady_frame_allocates_nothing() {
     let mut app = headless_app(uvec2(64, 48), |app| {

@@ -3,12 +3,12 @@
 // Positions are relative to the eye, in metres along the world's axes.
 
 struct GpuRainLevel {
-    // What of the four densities makes up a voxel.
+    // Weights of the four densities in a voxel.
     weights: vec4<f32>,
     // Side of its voxels.
     size: f32,
     inverse_size: f32,
-    // Distances from the eye, across the fall, that its voxels stand for.
+    // Range of distances from the eye, across the fall, that its voxels represent.
     start: f32,
     end: f32,
 }
@@ -19,13 +19,13 @@ struct GpuRainLight {
     // cd times the light's colour.
     intensity: vec3<f32>,
     spot_scale: f32,
-    // Where a spot light shines.
+    // Direction of a spot light.
     direction: vec3<f32>,
     spot_offset: f32,
 }
 
 struct GpuRainSun {
-    // The way its light goes.
+    // Direction in which its light travels.
     direction: vec3<f32>,
     // lx times the light's colour.
     illuminance: vec3<f32>,
@@ -37,10 +37,10 @@ struct GpuShelter {
 }
 
 struct GpuRain {
-    // Drops of mean speed come from there: unit length, y > 0.
+    // Direction from which drops of mean speed fall: unit length, y > 0.
     axis: vec3<f32>,
     distance: f32,
-    // Where the camera looks.
+    // View direction.
     forward: vec3<f32>,
     // 0: the rays of the view are parallel.
     perspective: u32,
@@ -58,23 +58,23 @@ struct GpuRain {
     // How far the drops of the textures have fallen: whole metres, and the rest.
     fallen_tiles: i32,
     fallen: f32,
-    // Drops one by one: up to which distance across the fall there are any, and up to which at all.
+    // Individually drawn drops: largest distance across the fall, and largest distance overall.
     drops_end: f32,
     drops_reach: f32,
-    // How many there are in a cubic metre.
+    // Number of drops per cubic metre.
     drops: f32,
     exposure: f32,
-    // For how long they have fallen, and how far the air has gone meanwhile.
+    // How long they have fallen; `drift` is how far the air has moved meanwhile.
     seconds: f32,
     wind: vec2<f32>,
     drift: vec2<f32>,
-    // At which columns of drops lean.
+    // The speed for which columns of drops lean.
     mean_speed: f32,
-    // Other seeds, other drops.
+    // Different seeds give different drops.
     seed: u32,
     // How long the view's y and z axes are in the world.
     view_scale: vec2<f32>,
-    // Terminal speeds by diameter, in steps of SPEED_STEP.
+    // Terminal velocities by diameter, in steps of SPEED_STEP.
     speeds: array<vec4<f32>, 16>,
     levels: array<GpuRainLevel, 4>,
     lights: array<GpuRainLight, 32>,
@@ -89,11 +89,11 @@ const STREAK_TEXELS: vec2<f32> = vec2(512.0, 512.0);
 const SPEED_STEP: f32 = 0.1;
 // Larger drops break up. Unit: mm.
 const LARGEST: f32 = 6.0;
-// Sine of the angle between a ray and the fall: nearer to it, streaks are points, and their opacity
-// grows no more.
+// Sine of the angle between a ray and the fall below which streaks are points and their opacity no
+// longer grows.
 const STEEPEST: f32 = 0.15;
 
-// A voxel of rain as it comes to the vertex shaders, of streaks and of drops alike.
+// A voxel of rain as passed to the vertex shaders, of streaks and of drops alike.
 struct Voxel {
     @location(0) center: vec3<f32>,
     @location(1) size: f32,

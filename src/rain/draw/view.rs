@@ -23,13 +23,13 @@ use crate::rain::{
     settings::RainMethod,
 };
 
-/// The most stretches of distance that transparent things sort between.
+/// Maximum number of shells between which transparent objects are sorted.
 pub(crate) const MAX_SHELLS: usize = 16;
 
-/// What a view draws of rain, in the render world.
+/// The rain that a view draws, in the render world.
 #[derive(Component)]
 pub struct RainQuads {
-    /// Voxels of streaks, far ones first, and then cells of drops one by one.
+    /// Voxels of streaks from far to near, followed by cells of individually drawn drops.
     pub(crate) instances: RawBufferVec<GpuQuad>,
     pub(crate) shells: Vec<Shell>,
     pub(crate) cells: Range<u32>,
@@ -41,7 +41,7 @@ pub struct RainQuads {
     pub(crate) view_offset: u32,
 }
 
-/// What the shaders read, and what it was made of: it holds until that is another.
+/// The bind group of the shaders and the resources it was made from; it is valid until they change.
 pub(crate) struct RainBindGroup {
     pub(crate) group: BindGroup,
     pub(crate) buffers: [BufferId; 2],
@@ -57,18 +57,18 @@ pub(crate) struct Shell {
 }
 
 impl RainQuads {
-    /// How many voxels of streaks and cells of drops the view draws.
+    /// Number of voxels of streaks and cells of drops that the view draws.
     pub fn len(&self) -> usize {
         self.instances.len()
     }
 
-    /// Whether there is none.
+    /// Whether the view draws no voxels or cells.
     pub fn is_empty(&self) -> bool {
         self.instances.is_empty()
     }
 
-    /// Sorts the voxels of streaks, which are all that there are so far, far ones first, and cuts them
-    /// into shells: one for all where nothing needs to sort between them.
+    /// Sorts the voxels of streaks, the only instances so far, from far to near and cuts them into
+    /// shells: a single shell if nothing needs to sort between them.
     pub(crate) fn cut_shells(&mut self, distance: f32, alone: bool) {
         self.shells.clear();
         let quads = self.instances.values_mut();
@@ -90,7 +90,7 @@ impl RainQuads {
             });
             start = end;
         }
-        // More than the last one can hold are one.
+        // Shells beyond the maximum are merged into the last one.
         if self.shells.len() > MAX_SHELLS {
             self.shells.truncate(MAX_SHELLS);
             if let Some(last) = self.shells.last_mut() {
@@ -117,11 +117,12 @@ impl Default for RainQuads {
     }
 }
 
-/// What is drawn of rain at which distance.
+/// How rain is drawn at each distance.
 pub(crate) struct Plan {
     /// Voxels of streaks.
     pub(crate) levels: Option<[Level; LEVEL_COUNT]>,
-    /// Drops one by one: so far from the eye across the fall, and so far at all. Unit: m.
+    /// Individually drawn drops: largest distance from the eye across the fall, and largest
+    /// distance overall. Unit: m.
     pub(crate) drops_end: f32,
     pub(crate) drops_reach: f32,
 }
@@ -146,7 +147,8 @@ impl Plan {
         }
     }
 
-    /// Whether there are rays so near to the fall that drops and streaks leave some of their way.
+    /// Whether some rays are so close to the fall that drops and streaks leave part of them
+    /// uncovered.
     pub(crate) fn leaves_some(&self, steepest: f32) -> bool {
         let near = if self.drops_reach > 0.0 {
             self.drops_end / self.drops_reach

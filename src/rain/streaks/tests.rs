@@ -61,7 +61,7 @@ fn the_mean_opacity_is_the_cross_section_of_the_drops_at_every_size_and_exposure
     }
 }
 
-/// Over many seeds, the drops take what Marshall and Palmer's take, and in the mean there are as many.
+/// Over many seeds, the drops have the extinction and the mean number of Marshall and Palmer's.
 #[test]
 fn drops_are_as_many_as_the_integral_says() {
     let seeds = 40;
@@ -88,8 +88,7 @@ fn drops_are_as_many_as_the_integral_says() {
     }
 }
 
-/// The paper's fixed count repeats; drops that know nothing of each other vary by the root of their
-/// number.
+/// The paper's fixed count repeats; independent drops vary by the square root of their number.
 #[test]
 fn variants_differ_in_number_as_chance_has_it() {
     let mean = count(BAKED_RATES[1], 1.0, LARGEST);
@@ -135,15 +134,15 @@ fn any_two_variants_may_stand_beside_or_on_another() {
     let top: Vec<_> = of_all(0, 1).collect();
     let strong = |line: &[i32]| line.iter().filter(|&&t| t > 20).count();
     assert!(strong(&top[0]) > 0, "no streak crosses the border");
-    // What crosses the border of one goes on in every other. Streaks that end at the border may add
-    // to one row alone: a few texels.
+    // Streaks across the border of one variant continue in every other. Streaks that end at the
+    // border may add to one row alone: a few texels.
     for above in of_all(WIDTH * (HEIGHT - 1), 1) {
         for below in &top {
             let ends = differing(&above, below);
             assert!(10 * ends <= 3 * strong(below) + 40, "{ends}");
         }
     }
-    // Columns at the sides are the same in all of them, whatever stands at the other side.
+    // Columns at the sides are the same in all of them, whatever is at the other side.
     for column in [0, WIDTH - 1] {
         let first = line(layers[0], column, WIDTH);
         assert!(strong(&first) > 0, "no streak crosses the border");
@@ -153,7 +152,7 @@ fn any_two_variants_may_stand_beside_or_on_another() {
     }
 }
 
-/// A streak at a corner goes on at the other three.
+/// A streak at a corner continues at the other three.
 #[test]
 fn streaks_wrap_on_all_sides() {
     let streak = Streak {

@@ -1,5 +1,5 @@
-//! Houdini's classic `.bgeo`, plain or zipped: our own reader, for memory within what is there, and
-//! splashsurf's writer.
+//! Houdini's classic `.bgeo`, plain or zipped: our own reader, whose memory is bounded by the
+//! file's size, and splashsurf's writer.
 
 use std::io::Read;
 
@@ -12,13 +12,13 @@ use splashsurf_lib::io::bgeo_format::{
 use super::{IDS, RADII, VELOCITIES, floats, ids, mean_radius};
 use crate::recording::ParticleFrame;
 
-/// What a file may unfold to: a few kilobytes can be zipped gigabytes of nothing.
+/// The most bytes after unzipping: a few kilobytes can be zipped gigabytes of nothing.
 const MAX_BYTES: u64 = 1 << 30;
 /// Position and weight.
 const POINT: usize = 16;
 const INTEGER: i32 = 1;
 
-/// Memory and time are linear in the bytes that are there, whatever the header says of them.
+/// Memory and time are linear in the actual bytes, whatever the header claims.
 pub(super) fn read(bytes: &[u8]) -> Result<ParticleFrame, String> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return parse(Bytes(bytes));
@@ -117,7 +117,7 @@ fn frame(points: &[u8], stride: usize, places: &[Place]) -> ParticleFrame {
     }
 }
 
-/// What is left to read.
+/// The bytes left to read.
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {

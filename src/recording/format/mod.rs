@@ -17,10 +17,11 @@ use super::{
 /// A format of particle files, known by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 pub enum ParticleFormat {
-    /// Legacy VTK, text or big-endian binary: an unstructured grid or polygonal data, with the point
-    /// data `id`, `velocity` and `radius`.
+    /// Legacy VTK, text or big-endian binary: an unstructured grid or polygonal data, with the
+    /// point data `id`, `velocity` and `radius`.
     Vtk,
-    /// Houdini's classic `.bgeo`, plain or zipped, with the point attributes `id`, `v` and `pscale`.
+    /// Houdini's classic `.bgeo`, plain or zipped, with the point attributes `id`, `v` and
+    /// `pscale`.
     Bgeo,
     /// PLY, text or binary: the element `vertex` with `x`, `y`, `z`, and `id`, `vx`, `vy`, `vz`,
     /// `radius`.
@@ -54,7 +55,7 @@ impl ParticleFormat {
     }
 
     pub(super) fn read(self, bytes: &[u8]) -> Result<ParticleFrame, String> {
-        // Other people's readers check some of their assumptions by panicking.
+        // Third-party readers panic on some invalid input.
         let guarded = |read: fn(&[u8]) -> Result<ParticleFrame, String>| {
             quietly(|| read(bytes)).ok_or("it breaks its format's rules")?
         };
@@ -80,7 +81,7 @@ impl ParticleFormat {
     }
 }
 
-/// Ids from numbers of any type: all of them, or none where one is no whole number of 32 bits.
+/// Ids from numbers of any type; none if any of them is not a whole number of 32 bits.
 fn ids(numbers: impl Iterator<Item = f64>) -> Vec<u32> {
     let whole = |number: f64| (number as u32 as f64 == number).then_some(number as u32);
     numbers
@@ -89,7 +90,7 @@ fn ids(numbers: impl Iterator<Item = f64>) -> Vec<u32> {
         .unwrap_or_default()
 }
 
-/// The mean of the radii that are some.
+/// The mean of the valid radii.
 fn mean_radius(radii: impl Iterator<Item = f32>) -> Option<f32> {
     let (sum, count) = radii
         .filter(|&radius| super::frame::is_radius(radius))

@@ -1,4 +1,4 @@
-//! PLY, by `ply-rs`, with a look at what the header claims before the reader believes it.
+//! PLY, by `ply-rs`, after a check of the header's claims.
 
 use bevy::prelude::*;
 use ply_rs::{
@@ -9,10 +9,10 @@ use ply_rs::{
 use super::{IDS, RADII, ids, mean_radius};
 use crate::recording::ParticleFrame;
 
-/// Longer headers are none.
+/// Longer headers are invalid.
 const MAX_HEADER: usize = 1 << 16;
 
-/// What is asked for of an element; the reader fills it in by name.
+/// The requested properties of an element; the reader sets them by name.
 struct Vertex {
     position: Vec3,
     velocity: Vec3,
@@ -88,8 +88,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<ParticleFrame, String> {
     Ok(frame)
 }
 
-/// Refuses headers that claim more elements than there are bytes, or elements of nothing, of which
-/// any number fits into any file: the reader would believe both.
+/// Refuses headers that claim more elements than there are bytes, or elements without properties,
+/// of which any number fits into any file: the reader trusts both.
 fn check_header(bytes: &[u8]) -> Result<(), String> {
     let header = &bytes[..bytes.len().min(MAX_HEADER)];
     let mut of_nothing = None;

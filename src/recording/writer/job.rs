@@ -48,7 +48,7 @@ impl Job {
     }
 }
 
-/// What the `.fluid.ron` beside the frames holds.
+/// The content of the `.fluid.ron` beside the frames.
 pub(super) fn description(
     pattern: &FramePattern,
     writer: &RecordingWriter,

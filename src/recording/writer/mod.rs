@@ -16,30 +16,31 @@ use crate::{particles::FluidParticles, range::SettingRange};
 const TOLERANCE: f64 = 1e-3;
 const MAX_RATE: f32 = 10_000.0;
 
-/// Writes the [`FluidParticles`] beside it to numbered files, in the format of their extension, with
-/// the [`ParticleAttributes`] if there are some, and a `.fluid.ron` that says how to play them.
+/// Writes the [`FluidParticles`] on its entity to numbered files, in the format of their extension,
+/// with the [`ParticleAttributes`] if there are some, and a `.fluid.ron` for playing them.
 ///
-/// Frame n is the state in the first frame of the app at or after n / `rate`, from the frame on in
-/// which the component is there. Everything is written in the background; where files are slower
-/// than the app, frames are left out (and counted) rather than waited for: numbers keep their time.
-/// What cannot be written is said once, with its path, and ends the recording until the component
-/// changes. [`WrittenFrames`] has the counts.
+/// Frame n is the state in the first frame of the app at or after n / `rate`, counted from the
+/// frame in which the component is added. Everything is written in the background; if files are
+/// slower than the app, frames are dropped (and counted), and the others keep their numbers and
+/// times. A file that cannot be written is logged once, with its path, and ends the recording until
+/// the component changes. [`WrittenFrames`] has the counts.
 ///
-/// A rate out of its range ends it too; a queue below 1 counts as 1.
+/// A rate out of range ends the recording too; a queue below 1 is clamped to 1.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(FluidParticles, WrittenFrames)]
 pub struct RecordingWriter {
-    /// Names of the files, see [`FramePattern`]: a path of the file system with one number. Missing
-    /// folders are made, and files that are there are replaced. Another pattern starts anew.
+    /// Names of the files, see [`FramePattern`]: a file system path with one number. Missing
+    /// folders are created, and existing files are replaced. Another pattern starts a new
+    /// recording.
     pub frames: String,
     /// Frames per second of the app's [`Time`]. Range > 0..=10,000, default 30.
     #[reflect(@SettingRange::new(0.1, 1e4).unit("1/s").logarithmic())]
     pub rate: f32,
-    /// Whether nothing is written and the recording's clock stands still. Default: false.
+    /// Whether writing and the recording's clock are paused. Default: false.
     pub paused: bool,
-    /// The most frames that wait to be written. Range ≥ 1, default 4. Higher: slow spells of the
-    /// disk lose no frames, for the memory of as many.
+    /// Maximum number of frames waiting to be written. Range ≥ 1, default 4. Higher: fewer frames
+    /// are lost while the disk is slow, for more memory.
     #[reflect(@SettingRange::new(1.0, 256.0).unit("frames").logarithmic().open())]
     pub queue: usize,
 }
@@ -65,15 +66,15 @@ impl RecordingWriter {
     }
 }
 
-/// What else is known of the particles of the fluid beside it, for a [`RecordingWriter`]: whoever
-/// moves the particles keeps it up to date.
+/// Ids and velocities of the particles of the fluid on its entity, for a [`RecordingWriter`]: the
+/// code that moves the particles keeps them up to date.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ParticleAttributes {
-    /// Who is who from frame to frame, so that players can interpolate: one for each particle, or
-    /// none at all.
+    /// Ids that match particles from frame to frame, so that players can interpolate: one for each
+    /// particle, or none at all.
     pub ids: Vec<u32>,
-    /// One for each particle, or none at all. Unit: m/s.
+    /// Velocities: one for each particle, or none at all. Unit: m/s.
     pub velocities: Vec<Vec3>,
 }
 
@@ -121,7 +122,7 @@ pub(in crate::recording) fn record(
     }
 }
 
-/// The number of the frame whose time has come, if it has.
+/// The number of the frame that is due, if any.
 fn frame_due(
     writer: &RecordingWriter,
     written: &mut WrittenFrames,

@@ -1,4 +1,4 @@
-//! What has been written, and what still waits.
+//! Frames that have been written, and those that still wait.
 
 use std::mem;
 
@@ -10,11 +10,11 @@ use bevy::{
 use super::job::Job;
 use crate::recording::frame::FrameError;
 
-/// What a [`RecordingWriter`](super::RecordingWriter) has written.
+/// Counts of the frames that a [`RecordingWriter`](super::RecordingWriter) has written.
 #[derive(Component, Debug, Default)]
 pub struct WrittenFrames {
     pub(super) pattern: String,
-    /// Counts the patterns: what still waits of another is none of this one's frames.
+    /// Counts the patterns: frames that still wait for an earlier one do not count.
     pub(super) recording: u32,
     /// Whether its `.fluid.ron` is written or on its way.
     pub(super) is_described: bool,
@@ -30,17 +30,17 @@ pub struct WrittenFrames {
 }
 
 impl WrittenFrames {
-    /// How many frames have been written.
+    /// Number of frames written.
     pub fn written(&self) -> u32 {
         self.written
     }
 
-    /// How many frames have been left out because too many waited.
+    /// Number of frames dropped because too many were waiting.
     pub fn dropped(&self) -> u32 {
         self.dropped
     }
 
-    /// How many frames wait to be written.
+    /// Number of frames waiting to be written.
     pub fn waiting(&self) -> usize {
         self.jobs.len()
     }
@@ -50,8 +50,8 @@ impl WrittenFrames {
         self.error.as_deref()
     }
 
-    /// Waits until everything is written: for the end of a program, which would end the writing
-    /// too.
+    /// Waits until everything is written: call it at the end of a program, which would otherwise
+    /// end the writing too.
     pub fn finish(&mut self) {
         for task in mem::take(&mut self.jobs) {
             let (job, result) = block_on(task);
@@ -104,7 +104,7 @@ impl WrittenFrames {
 
 impl Drop for WrittenFrames {
     fn drop(&mut self) {
-        // What waits is still written where the fluid is despawned.
+        // Waiting frames are still written when the fluid is despawned.
         for task in self.jobs.drain(..) {
             task.detach();
         }

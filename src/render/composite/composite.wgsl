@@ -29,7 +29,7 @@ struct Output {
 
 const THERE: u32 = 0x80000000u;
 const DIRECT: u32 = 0x80000u;
-// A step is some pixels long: short tracks take few.
+// A step is a few pixels long, so short tracks need few steps.
 const STEP_PIXELS: f32 = 6.0;
 const MAX_STEPS: f32 = 32.0;
 const HALVINGS: i32 = 4;
@@ -46,9 +46,9 @@ fn color_at(pixel: vec2<f32>) -> vec3<f32> {
     return color_in(scene_color, pixel);
 }
 
-// What is far away along a ray that meets nothing opaque: the environment, or a body that has been
-// painted before it. Bodies are in no depth that could be searched; where the ray passes the
-// centre of the next one, its colour has changed the picture.
+// The distant light along a ray that meets nothing opaque: the environment, or a body painted
+// earlier. Bodies are in no depth texture that could be searched; if the colour has changed where
+// the ray passes the next body's centre, that colour is used.
 fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
 #ifdef SEVERAL
     let t = dot(body.behind.xyz - position, direction);
@@ -119,8 +119,9 @@ fn gap_on(way: Way, s: f32) -> f32 {
     return scene_depth_on(way, s) - (way.start.z + s * way.step.z);
 }
 
-// Where between `low`, before the scene, and `high`, behind it, the ray meets it. Over a plane the
-// gap is linear and one look along the line is enough; at a step in depth the way is halved.
+// Point between `low`, in front of the scene, and `high`, behind it, where the ray meets the scene.
+// Over a plane the gap is linear and one step along the line is enough; at a step in depth the
+// interval is halved.
 fn meeting_on(way: Way, low: vec2<f32>, high: vec2<f32>) -> f32 {
     let slope = (high.y - low.y) / (high.x - low.x);
     let zero = low.x - low.y / slope;
@@ -162,7 +163,7 @@ fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
     return far_away(position, direction);
 }
 
-// What the liquid sends and lets pass.
+// Light from the liquid, and background light transmitted through it.
 fn light(pixel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
     let uv = unpack2x16unorm(exit.x);
     let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
@@ -202,7 +203,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 #endif
     out.depth = front;
     if front >= INSIDE_FRONT {
-        // The eye is in the liquid: its far surface, or what stands in it, is what is seen.
+        // The eye is in the liquid: its far surface, or an opaque thing in it, is visible.
         let layers = select(spray, bulk, bulk.x >= INSIDE_FRONT);
         out.depth = max(select(0.0, -layers.y, has_back(layers)), nearest_scene_depth(pixel));
     }

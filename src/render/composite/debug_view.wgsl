@@ -13,7 +13,7 @@
 @group(1) @binding(4) var exits: texture_2d<u32>;
 // Nearest and farthest view depth of the body.
 @group(1) @binding(5) var<uniform> depth_range: vec4<f32>;
-// The number of splats, or the way through them where it was summed up.
+// The number of splats, or the accumulated path length through them.
 @group(1) @binding(6) var amounts: texture_2d<f32>;
 
 const DIRECT: u32 = 0x80000u;
@@ -49,7 +49,7 @@ fn heat(amount: f32) -> vec3<f32> {
     return mix(color, vec3(1.0), clamp(t - 3.0, 0.0, 1.0));
 }
 
-// The straight way through the liquid, as a part of the body's depth.
+// The straight path length through the liquid, as a fraction of the body's depth.
 fn relative_thickness(bulk: vec2<f32>, spray: vec2<f32>, position: vec2<f32>) -> f32 {
     let pixel = vec2<i32>(position);
 #ifdef ACCUMULATED
@@ -64,12 +64,12 @@ fn relative_thickness(bulk: vec2<f32>, spray: vec2<f32>, position: vec2<f32>) ->
     return length / (depth_range.y - depth_range.x);
 }
 
-// The least fortunate of a ray's searches.
+// The worst status of a ray's searches.
 fn worst(status: u32) -> u32 {
     var out = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
         let s = (status >> (4u * i)) & 15u;
-        // A hit is no news, and an opaque surface met is none either.
+        // A hit is no failure, and neither is meeting an opaque surface.
         if (s > 1u && s < 7u) || out <= 1u {
             out = max(out, s);
         }

@@ -33,14 +33,14 @@ pub(crate) struct CompositeKey {
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
     pub(crate) part: CompositePart,
-    /// There are other bodies, which may be seen through this one.
+    /// Whether there are other bodies, which may be visible through this one.
     pub(crate) several: bool,
-    /// The thickness that a debug view shows was summed up.
+    /// Whether the thickness shown by a debug view is accumulated.
     pub(crate) accumulated: bool,
 }
 
-/// What is written. Were bodies to write their depth at once, one that is painted later would be
-/// cut off where it is behind.
+/// What is written. If bodies wrote their depth at once, a body painted later would be cut off
+/// where it is behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum CompositePart {
     /// Light and depth: the only body, or a debug view.
@@ -49,8 +49,8 @@ pub(crate) enum CompositePart {
     Light,
     /// Depth alone, once all bodies' light is there.
     Depth,
-    /// Likewise, where more than half of the background is hidden: what is transparent and comes
-    /// later is hidden by dense smoke, but not by thin.
+    /// Depth alone, where more than half of the background is hidden: transparent objects drawn
+    /// later are hidden by dense smoke, but not by thin smoke.
     DenseDepth,
 }
 
@@ -157,7 +157,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
             vertex: self.fullscreen.clone(),
             depth_stencil: Some(DepthStencilState {
                 format: CORE_3D_DEPTH_FORMAT,
-                // What is transparent or comes after sorts against the liquid.
+                // Transparent objects and later passes are depth-tested against the liquid.
                 depth_write_enabled: Some(key.debug_view.is_none() && key.part.depth()),
                 depth_compare: Some(compare),
                 stencil: default(),
@@ -173,7 +173,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
     }
 }
 
-/// The pass: all bodies of the view, each over what is there already.
+/// The pass: all bodies of the view, each composited over the previous ones.
 pub(crate) fn composite(
     view: ViewQuery<(&ViewTarget, &ViewDepthTexture, &ViewBodies)>,
     cache: Res<PipelineCache>,
@@ -236,7 +236,7 @@ fn paint<'a>(
     pass.draw(0..3, 0..1);
 }
 
-/// The colour so far, where rays can look it up while the target is written to.
+/// Copies the current colour, so that rays can look it up while the target is written.
 fn copy_scene(
     ctx: &mut RenderContext,
     target: &ViewTarget,
@@ -246,7 +246,7 @@ fn copy_scene(
     let Some(copy) = copy else {
         return;
     };
-    // Rays leave the body's own rectangle, so the whole viewport may be asked for.
+    // Rays leave the body's own rectangle, so the whole viewport may be needed.
     let region = bodies.viewport;
     let mut from = target.main_texture().as_image_copy();
     from.origin.x = region.min.x;

@@ -19,7 +19,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
             if weight <= 0.0 || any(pixel < vec2(0)) || any(pixel >= size) {
                 continue;
             }
-            // Where there is no surface the normal is zero and stays so.
+            // Without a surface the normal is zero and stays zero.
             let there = valid_layers(layers_at(pixel).xy);
             let encoded = textureLoad(normals, pixel, 0);
             front += select(0.0, weight, there.x) * decode_normal(encoded.xy);

@@ -1,4 +1,4 @@
-//! Normals that smoothing has not written: the bulk's from depth, the spray's from its ellipsoids.
+//! Normals not written by smoothing: the bulk's from depth, the spray's from its ellipsoids.
 
 use bevy::{
     asset::load_embedded_asset,
@@ -139,7 +139,7 @@ impl SpecializedRenderPipeline for NormalsPipeline {
                     buffers: vec![],
                 },
                 primitive: SPLAT_QUAD,
-                // Two ellipsoids that made the same pixel: either normal will do.
+                // If two ellipsoids made the same pixel, either normal is valid.
                 fragment: Some(fragment(
                     &self.splat_normals,
                     shader_defs,

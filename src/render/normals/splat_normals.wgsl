@@ -1,5 +1,5 @@
-// Normals from the ellipsoids themselves, as spray wants them: drawn once more over finished layers,
-// where only the ellipsoid that made a layer leaves its normal.
+// Normals from the ellipsoids themselves, for spray: the splats are drawn once more over finished
+// layers, and only the ellipsoid that made a layer writes its normal.
 
 #import bevy_fluid::render::functions::encode_normal
 #import bevy_fluid::render::splat::ellipsoid::{EllipsoidVertex, intersect, place}

@@ -1,4 +1,4 @@
-// What is inside a body: the light it stands in, and how thick it is.
+// The inside of a body: its surrounding light, source term and thickness.
 #define_import_path bevy_fluid::render::refract::inside
 
 #import bevy_fluid::render::bindings::body
@@ -21,7 +21,7 @@ fn even_light() -> vec3<f32> {
     return body.even_light + around;
 }
 
-// What a metre of the body sends to the eye.
+// In-scattered light and emission per metre of the body.
 fn medium_source() -> vec3<f32> {
     var out = body.emission;
 #ifdef SCATTERING
@@ -30,7 +30,7 @@ fn medium_source() -> vec3<f32> {
     return out;
 }
 
-// The way through all particles of a pixel.
+// The accumulated path length through all particles at a pixel.
 fn accumulated_length(pixel: vec2<i32>) -> f32 {
     return textureLoad(thickness, pixel, 0).x;
 }

@@ -1,4 +1,4 @@
-// The four layers and the opaque scene, asked between pixels.
+// The four layers and the opaque scene, sampled between pixels.
 #define_import_path bevy_fluid::render::refract::layers
 
 #import bevy_fluid::render::bindings::{body, view}
@@ -36,7 +36,8 @@ fn load_layers(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
 
 fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
     let encoded = codes(kind, pixel);
-    // The back's are stored towards the viewer, as the front's: encoding them is then as fine.
+    // Back normals are stored towards the viewer, like the front's: they are then encoded as
+    // precisely.
     return select(-decode_normal(encoded.zw), decode_normal(encoded.xy), side == FRONT);
 }
 
@@ -111,8 +112,8 @@ fn weights_on(quad: Quad, depths: vec4<f32>, map: DepthMap) -> vec4<f32> {
     return select(vec4(0.0), weights / max(dot(weights, vec4(1.0)), 1e-20), nearest > 0.0);
 }
 
-// (front, back) in device depth, 0 where the layer has none. It is affine over a plane, so it is
-// what is interpolated.
+// (front, back) in device depth, 0 where the layer has none. Device depth is affine over a plane,
+// so it can be interpolated.
 fn layer_depths(kind: u32, pixel: vec2<f32>, map: DepthMap) -> vec2<f32> {
     let quad = quad_at(kind, pixel);
     return vec2(

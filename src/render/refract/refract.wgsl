@@ -20,7 +20,7 @@
 
 const MAX_HALF: f32 = 65504.0;
 const INTERFACES: u32 = #{INTERFACES}u;
-// There is a second class to enter.
+// Whether there is a second class to enter.
 const BOTH_CLASSES: bool = #{BOTH_CLASSES};
 #ifdef OPAQUE
 // Nothing is seen through the body.
@@ -30,9 +30,9 @@ const SEEN_THROUGH: bool = true;
 #endif
 
 struct Output {
-    // What the liquid itself sends: reflections and highlights, and what its medium does.
+    // The liquid's own radiance: reflections, highlights, in-scattered light and emission.
     @location(0) radiance: vec4<f32>,
-    // What is left of the background's light.
+    // The transmitted fraction of the background's light.
     @location(1) transmission: vec4<f32>,
     // Where to look for the background: see `pack_exit`.
     @location(2) exit: vec4<u32>,
@@ -43,7 +43,7 @@ struct Path {
     direction: vec3<f32>,
     radiance: vec3<f32>,
     transmission: vec3<f32>,
-    // What a metre of the medium sends.
+    // In-scattered light and emission per metre of the medium.
     source: vec3<f32>,
     kind: u32,
     first_kind: u32,
@@ -69,7 +69,7 @@ fn cross_interface(path: ptr<function, Path>, n: vec3<f32>, entering: bool) -> b
     (*path).interfaces += 1u;
     if at.reflectance >= 1.0 {
         (*path).direction = at.reflected;
-        // From outside (index below 1) nothing gets in: what is seen is the reflection.
+        // From outside (index below 1) no light enters: only the reflection is visible.
         return false;
     }
     (*path).radiance += (*path).transmission * at.reflectance * environment(at.reflected);
@@ -82,8 +82,8 @@ fn pixel_of(position: vec3<f32>) -> vec2<f32> {
     return pixel_from_ndc(device_from_view(position).xy);
 }
 
-// A way through the medium: what it sends joins what came before it, and what it takes is lost to
-// all behind it.
+// A path through the medium: its light is added to the radiance so far, and its extinction dims
+// everything behind it.
 fn pass_through(path: ptr<function, Path>, length: f32) {
 #ifdef SOURCE
     (*path).radiance += (*path).transmission * reflected((*path).source, body.extinction, length);
@@ -102,7 +102,7 @@ fn contact(direction: vec3<f32>, n: vec3<f32>) -> f32 {
     return body.contact / max(abs(dot(direction, n)), 0.25);
 }
 
-// Looks for opaque things up to `t`; if one is met the path ends there.
+// Searches for an opaque surface up to `t`; if one is met, the path ends there.
 fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     let met = meets_scene((*path).position, (*path).direction, t);
     if met.status != STATUS_HIT {
@@ -117,12 +117,12 @@ fn stops(path: ptr<function, Path>, t: f32, inside: bool) -> bool {
     return true;
 }
 
-// The straight way through the liquid at a pixel.
+// The straight path length through the liquid at a pixel.
 fn straight_length(pixel: vec2<i32>, ndc: vec2<f32>) -> f32 {
 #ifdef ACCUMULATED
     return accumulated_length(pixel);
 #else ifdef OPAQUE
-    // Farther than light comes.
+    // Farther than light reaches.
     return 1e30;
 #else
     return layered_length(load_layers(BULK, pixel), load_layers(SPRAY, pixel), pixel, ndc);
@@ -272,12 +272,12 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
 #endif
     if path.direct && INTERFACES <= 1u {
-        // Looked up at this very pixel.
+        // The background is looked up at this very pixel.
         path.position = view_from_device(ndc, front);
     }
 
     var out: Output;
-    // The sun in a smooth surface is brighter than f16 can tell.
+    // The sun in a smooth surface is brighter than f16 can represent.
     out.radiance = vec4(min(path.radiance, vec3(MAX_HALF)), 1.0);
     out.transmission = vec4(path.transmission, 1.0);
     out.exit = pack_exit(path);

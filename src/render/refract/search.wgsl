@@ -13,7 +13,7 @@
     STATUS_BUDGET, STATUS_HIT, STATUS_INVALID, STATUS_LEFT_LAYER, STATUS_NO_BRACKET,
 }
 
-// What a ray is looking for.
+// The target of a search along a ray.
 struct Target {
     kind: u32,
     // Leaving the liquid: the back layer, and with `both` the front layer as well (after a total
@@ -48,7 +48,7 @@ struct Found {
 const EVALUATIONS: i32 = 8;
 const SECANT_EVALUATIONS: i32 = 16;
 
-// How often this pixel has asked a layer: what a search costs.
+// Number of layer samples for this pixel: the cost of its searches.
 var<private> evaluations: u32;
 
 fn gap_at(to: Target, track: Track, s: f32) -> Gap {
@@ -57,8 +57,8 @@ fn gap_at(to: Target, track: Track, s: f32) -> Gap {
     let pixel = pixel_from_ndc(at.xy);
     let near = in_device_depth(track, tolerance(track, s), at.z);
     var out = Gap(false, select(-1.0, 1.0, to.leaving), near, select(FRONT, BACK, to.leaving), on_screen(pixel));
-    // Off the screen the liquid and the solids are taken to go on as they are at its border;
-    // droplets are not.
+    // Off the screen, the liquid and the solids are assumed to continue as at its border; droplets
+    // are not.
     let asked = clamp_to_view(pixel);
     if to.scene {
         let depth = scene_depth_at(asked);
@@ -98,7 +98,7 @@ fn zero_of_line(a: f32, a_value: f32, b: f32, b_value: f32) -> f32 {
     return select(b, b - b_value * (b - a) / slope, slope != 0.0);
 }
 
-// At a point that is near enough the line to an end on the other side comes nearer still, at no
+// At a point that is near enough, the line to an end on the other side gives a better point at no
 // cost.
 fn hit(track: Track, s: f32, gap: Gap, end: f32, end_gap: Gap) -> Found {
     let better = zero_of_line(end, end_gap.value, s, gap.value);
@@ -231,7 +231,7 @@ fn search_secant(to: Target, track: Track, start: Gap, guess: f32) -> Found {
         // Without a layer at the start there is no gap to draw a first line from.
         let has_line = (start.known || met_layer) && g1 != g0;
         let next = select(2.0 * t1, zero_of_line(t0, g0, t1, g1), has_line);
-        // "Either" of the two is replaced: we replace the one that is farther off.
+        // The thesis replaces "either" of the two; this replaces the one that is farther off.
         if !met_layer || abs(g1) <= abs(g0) {
             t0 = t1;
             g0 = g1;
@@ -266,7 +266,7 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
         guess = max(guess, select(0.0, deep, depths.x > 0.0));
         start.value = min(start.value, -in_device_depth(track, 0.01 * body.radius, track.start.z));
     } else if to.leaving && start.value >= -start.near {
-        // Thinner than can be told.
+        // Thinner than the tolerance.
         return Found(STATUS_HIT, 0.0, start.side);
     } else if start.known && start.value >= 0.0 {
         // Entering, and behind it already.

@@ -1,4 +1,4 @@
-//! The opaque scene's depth, one value a pixel: many rays ask for it.
+//! The opaque scene's depth, resolved once per pixel because many rays sample it.
 
 use bevy::{
     asset::load_embedded_asset,

@@ -1,6 +1,6 @@
 // The depth prepass as (nearest, farthest) of each pixel's samples. Depths are never averaged
-// across samples: what is behind the nearest is hidden in part, what is behind the farthest in
-// every one of them.
+// across samples: anything behind the nearest is partly hidden, anything behind the farthest is
+// hidden in every sample.
 
 #ifdef MULTISAMPLED
 @group(0) @binding(0) var depth: texture_depth_multisampled_2d;

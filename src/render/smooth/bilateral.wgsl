@@ -19,7 +19,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         for (var i = -#{HALF_TAPS}; i <= #{HALF_TAPS}; i += 1) {
             let tap = tap_at(window, vec2(i, j), edge_weight(window, i) * edge_weight(window, j));
             let w = tap.weight * exp(-falloff * f32(i * i + j * j));
-            // A tap that is not there has no depth that could be multiplied by 0.
+            // A missing tap has no depth that could be multiplied by 0.
             let apart = view_depths(window.map, tap.value.xy) - window.depth;
             total += w;
             sum += select(vec2(0.0), w * apart, w > vec2(0.0));

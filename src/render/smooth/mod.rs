@@ -1,4 +1,4 @@
-//! The bulk's layers without the bumps of single particles.
+//! Smoothing of the bulk's layers, which removes the bumps of single particles.
 
 use bevy::{
     asset::load_embedded_asset,
@@ -182,7 +182,7 @@ impl SmoothSteps {
         let steps = (0..total)
             .map(|i| {
                 let kernel = kernels[i % kernels.len()];
-                // The last fit hands its slopes to the normals.
+                // The last fit passes its slopes to the normals.
                 let slopes = kernel == SmoothKernel::Rows && i + 2 == total;
                 let to = match from {
                     _ if slopes => Buffer::Slopes,
@@ -280,7 +280,7 @@ impl SmoothSteps {
     }
 }
 
-/// What the passes read, by texture: many passes read the same.
+/// The input bind groups of the passes, by texture: many passes read the same texture.
 #[derive(Default)]
 pub(crate) struct SmoothGroups {
     bulk: [Option<BindGroup>; 2],
@@ -304,7 +304,7 @@ fn texture(layers: &Layers, buffer: Buffer) -> &TextureView {
     }
 }
 
-/// Half window in radii as the shaders take it; 0 means one pixel a tap.
+/// Half window in radii, for the shaders; 0 means one pixel per tap.
 pub(crate) fn window_radii(window: Window) -> f32 {
     match window {
         Window::Radii(radii) if radii.is_finite() => radii.clamp(0.05, 4.0),

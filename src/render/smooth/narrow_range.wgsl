@@ -22,7 +22,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if !any(window.valid) {
         return window.center;
     }
-    // A back is looked at from behind: nearer and farther change places.
+    // A back is viewed from behind: nearer and farther are swapped.
     let towards = vec2(1.0, -1.0);
     let delta = vec2(body.range);
     var range = Range(delta, delta, vec2(1.0), vec2(0.0));

@@ -85,7 +85,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 #endif
 
 #ifdef LINE
-// Along rows (LINE = 0) or columns (1). Rows hand their slope on; columns average it.
+// Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it.
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let window = window_at(position.xy);
@@ -127,7 +127,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let layers = accept(window, window.center.xy + md - slope * mx, good);
     var per_pixel = slope / f32(window.spacing);
     if any(window.valid & !sloped) {
-        // So steep that all taps are out of range: the next pixel is what is left.
+        // So steep that all taps are out of range: the slope to the next pixel is used instead.
         let beside = one_sided_slope(window.pixel, window.center.xy, select(vec2(1, 0), vec2(0, 1), #{LINE} == 1));
         per_pixel = select(beside, per_pixel, sloped);
     }

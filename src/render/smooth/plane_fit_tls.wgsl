@@ -63,8 +63,8 @@ fn rotate(
 struct Smallest {
     // Unit length.
     eigenvector: vec3<f32>,
-    // The middle eigenvalue over the largest: near 0 for points on a line, which lies in every plane
-    // about it.
+    // The middle eigenvalue over the largest: near 0 for points on a line, which lies in every
+    // plane about it.
     spread: f32,
 }
 
@@ -110,7 +110,8 @@ fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
     let least = smallest(diagonal, products);
     let n = least.eigenvector;
     let facing = dot(n, ray.direction);
-    // A plane along the ray has no depth there, and f32 tells no plane from a line below the spread.
+    // A plane along the ray has no depth there, and below the spread f32 cannot distinguish a plane
+    // from a line.
     out.good = m.count >= 3.0 && least.spread > SPREAD && abs(facing) > 1e-4;
     out.normal = select(n, -n, facing > 0.0);
     let t = dot(n, mean) / select(1.0, facing, out.good);
@@ -152,7 +153,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     );
     out.layers = vec4(layers, 0.0, 0.0);
 #ifdef NORMALS
-    // Where there is no good plane the pixels beside tell the slopes.
+    // Without a good plane, the slopes come from neighbouring pixels.
     let x = one_sided_slope(window.pixel, window.center.xy, vec2(1, 0));
     let y = one_sided_slope(window.pixel, window.center.xy, vec2(0, 1));
     let front_slope = normal_from_slope(window.ndc, window.center.x, vec2(x.x, y.x));

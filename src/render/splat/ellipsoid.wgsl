@@ -10,7 +10,7 @@
 @group(1) @binding(0) var<storage, read> splats: array<Splat>;
 @group(1) @binding(1) var<uniform> fluid: GpuFluid;
 
-// An ellipsoid as every pixel of its quad sees it, in one of two forms.
+// An ellipsoid for every pixel of its quad, in one of two forms.
 //
 // `form` 0, wholly in front of the near plane: a quadric about the projected centre. With X, Y in
 // pixels and D in device depth from there, the homogeneous point of the unit sphere's space is
@@ -97,7 +97,7 @@ fn bound(a: vec4<f32>, w: vec4<f32>, near: f32) -> vec2<f32> {
     return range;
 }
 
-// One corner of the quad that bounds a splat on screen. What cannot be seen collapses to a point.
+// One corner of the quad that bounds a splat on screen. Invisible splats collapse to a point.
 fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     let splat = splats[splat_index];
     let view_linear = linear(view.view_from_world);
@@ -123,8 +123,8 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
 
     var out: EllipsoidVertex;
     let seen = bound_x.x <= bound_x.y && bound_y.x <= bound_y.y;
-    // A hair wider than the exact bound: rounding must not cut off a covered pixel centre. What is
-    // smaller than a pixel still takes the one that holds it.
+    // Slightly wider than the exact bound: rounding must not cut off a covered pixel centre. A
+    // splat smaller than a pixel still covers the pixel that holds it.
     let pixel = 2.0 / view.main_pass_viewport.zw;
     let size = vec2(bound_x.y - bound_x.x, bound_y.y - bound_y.x);
     let slack = select(vec2(0.02), vec2(0.52), size < pixel) * pixel;
@@ -219,8 +219,8 @@ fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     let dd = form(in.d, in.d);
     var chord = chord_at(in, in.position.xy - in.center.xy, dd);
     if chord.disc < 0.0 && all(floor(in.position.xy) == floor(in.center.xy)) {
-        // Too small for this pixel's centre. It is met in its own middle, or droplets in motion
-        // would come and go as they pass the centres of pixels.
+        // Too small for this pixel's centre: the splat is intersected at its own centre, or moving
+        // droplets would flicker as they pass the centres of pixels.
         chord = chord_at(in, vec2(0.0), dd);
     }
     let nearest = chord.nearest;

@@ -11,7 +11,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     let back_depth = textureLoad(back, pixel, 0);
     return vec2(
         textureLoad(front, pixel, 0),
-        // The clear value, 1, stands for nothing.
+        // The clear value, 1, means nothing.
         select(-back_depth, NO_BACK, back_depth >= 1.0),
     );
 }

@@ -35,7 +35,7 @@ use super::{
 };
 pub(crate) use overdraw::overdraw;
 
-/// What a draw of splats keeps.
+/// The output of a draw of splats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum SplatOutput {
     /// Both depths, by a `max` blend.
@@ -46,7 +46,7 @@ pub(crate) enum SplatOutput {
     FrontDepth,
     /// The farthest back, by the depth test.
     BackDepth,
-    /// How many there are, summed up in a texture of this format.
+    /// The number of splats, summed up in a texture of this format.
     Count(TextureFormat),
 }
 
@@ -54,15 +54,15 @@ pub(crate) enum SplatOutput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct SplatKey {
     pub(crate) output: SplatOutput,
-    /// Some of them may be cut by the near plane. Mostly none is, and without the code for those
-    /// the others are drawn in half the time.
+    /// Whether some may be cut by the near plane. Usually none is, and without the code for cut
+    /// splats the others are drawn in half the time.
     pub(crate) cut: bool,
 }
 
 #[derive(Resource)]
 pub(crate) struct SplatPipeline {
     pub(crate) shader: Handle<Shader>,
-    /// Splats and where their fluid stands.
+    /// Splats and their fluid's transform.
     pub(crate) fluid_layout: BindGroupLayoutDescriptor,
     pub(crate) merge_layout: BindGroupLayoutDescriptor,
     pub(crate) merge: CachedRenderPipelineId,
@@ -182,7 +182,7 @@ pub(crate) enum SplatPipelines {
     },
 }
 
-/// The two classes of splats that layers are made of, and all there are.
+/// The two classes of splats that layers are made of, or all splats.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
     Bulk,
@@ -217,16 +217,16 @@ pub(crate) fn draw_splats<'a>(
     }
 }
 
-/// What a pass that draws splats asks of a view.
+/// The view components that a pass over splats needs.
 pub(crate) type SplatView = (
     &'static ExtractedCamera,
     &'static ViewBodies,
     Option<&'static MainPassResolutionOverride>,
 );
 
-/// A pass that sums something up over splats, into a texture of every body that has one.
+/// A pass that accumulates a value over splats, into a texture of every body that has one.
 pub(crate) struct SplatSum<'a, 'w, 's> {
-    /// Of the pass and its time span.
+    /// Label of the pass and of its time span.
     pub(crate) label: &'static str,
     pub(crate) fluids: &'a Query<'w, 's, &'static GpuSplats>,
     pub(crate) cache: &'a PipelineCache,

@@ -12,8 +12,8 @@ fn vertex(
     return place(splat, corner);
 }
 
-// A front behind the opaque scene is hidden and left out; the back stays, because rays that pass
-// the opaque thing on their bent way still have to find it.
+// A front behind the opaque scene is hidden and left out; the back is kept, because refracted rays
+// that pass the opaque thing must still find it.
 fn visible_front(front: f32, pixel: vec2<f32>) -> f32 {
     return select(NO_FRONT, front, front >= farthest_scene_depth(vec2<i32>(pixel)));
 }

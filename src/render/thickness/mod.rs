@@ -1,4 +1,4 @@
-//! The way through bodies that bend no light, summed up over their particles.
+//! The accumulated path length through bodies without refraction.
 
 use bevy::{
     asset::load_embedded_asset,
@@ -38,11 +38,11 @@ pub(crate) fn init_thickness_pipeline(
 }
 
 impl SpecializedRenderPipeline for ThicknessPipeline {
-    /// What sums are kept in.
+    /// Format of the sums.
     type Key = TextureFormat;
 
     fn specialize(&self, format: TextureFormat) -> RenderPipelineDescriptor {
-        // Metres are asked for, which pixels and device depth do not tell.
+        // Path lengths are in metres, which needs view space.
         let shader_defs = defs([("VIEW_SPACE", true)]);
         RenderPipelineDescriptor {
             label: Some("fluid_thickness_pipeline".into()),
@@ -65,7 +65,7 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
     }
 }
 
-/// The pass: all bodies that ask for it.
+/// The pass: all bodies that need it.
 pub(crate) fn thickness(
     view: ViewQuery<SplatView>,
     fluids: Query<&'static GpuSplats>,

@@ -1,4 +1,4 @@
-// The way of a pixel's ray through each splat, summed up by the blend.
+// The path length of a pixel's ray through each splat, summed up by the blend.
 
 #import bevy_fluid::render::bindings::body
 #import bevy_fluid::render::functions::{nearest_scene_depth, ndc_from_pixel, view_from_device}
@@ -15,7 +15,7 @@ fn vertex(
 @fragment
 fn fragment(in: EllipsoidVertex) -> @location(0) f32 {
     let chord = chord_of(in);
-    // What lies behind an opaque thing is not passed.
+    // The path ends at an opaque surface.
     var end = chord.middle + chord.half_length;
     let scene = nearest_scene_depth(vec2<i32>(in.position.xy));
     if scene > 0.0 {
@@ -30,6 +30,6 @@ fn fragment(in: EllipsoidVertex) -> @location(0) f32 {
     // disc^(s + 1/2). The factor keeps that over the whole splat, whatever s.
     let s = body.softness;
     let soft = pow(chord.disc, s) * (1.0 + 2.0 / 3.0 * s);
-    // The vertex stage leaves there how much more a particle holds than its splat.
+    // `in.x.w` is the volume of the particle over that of its splat.
     return passed * soft * in.x.w;
 }

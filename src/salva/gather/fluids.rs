@@ -1,4 +1,4 @@
-//! Fluids: new ones, changed ones, and particles that somebody else has written.
+//! Fluids: new ones, changed ones, and particles written by other code.
 
 use bevy::{
     ecs::change_detection::Tick, math::Affine3A, prelude::*, transform::helper::TransformHelper,
@@ -15,17 +15,17 @@ use crate::{
     },
 };
 
-/// What is known of a fluid that is simulated.
+/// State of a simulated fluid.
 pub(crate) struct FluidEntry {
     /// World-space radius of its particles, m.
     pub(crate) radius: f32,
     /// When its particles were written last, by this plugin or as taken over.
     pub(crate) written: Tick,
-    /// How many things the world must have been told to know these particles.
+    /// Number of commands that the world must have applied to have these particles.
     pub(crate) told: u64,
     /// The transform that its particles were written with.
     pub(crate) space: Affine3A,
-    /// Which of its particles it has been told to keep, if an emitter feeds it.
+    /// The limits sent for its particles, if an emitter feeds it.
     pub(crate) limits: Option<Limits>,
 }
 
@@ -46,7 +46,7 @@ impl From<&SalvaFluid> for Substance {
     }
 }
 
-/// Tells of fluids that are new, other than they were, or gone.
+/// Sends new, changed and removed fluids to the simulation.
 pub(crate) fn gather_fluids(
     mut simulation: ResMut<Simulation>,
     mut fluids: Query<(
@@ -82,7 +82,7 @@ pub(crate) fn gather_fluids(
         } else if let Some(entry) = simulation.fluids.get_mut(&entity)
             && entry.limits.take().is_some()
         {
-            // What was the emitter's to limit stays now.
+            // Particles that the emitter limited stay now.
             simulation.tell(Command::Limit(entity.to_bits(), Limits::default()));
         }
         let checked = simulation.take_fluid(entity, &fluid, &particles, &transforms);

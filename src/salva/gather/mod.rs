@@ -1,4 +1,4 @@
-//! From components to what the simulation is told.
+//! From components to commands for the simulation.
 
 mod fluids;
 mod solids;

@@ -12,21 +12,21 @@ use crate::{
     },
 };
 
-/// What is known of a solid that is simulated, or cannot be.
+/// State of a solid that is simulated or refused.
 pub(crate) struct SolidEntry {
     form: Form,
     traits: Traits,
     /// Where a boundary was last, or where a body was written to be.
     pub(crate) at: Isometry3d,
-    /// How many things the world must have been told to know it there.
+    /// Number of commands that the world must have applied to have it there.
     pub(crate) told: u64,
-    /// The same to know its shape.
+    /// The same for its shape.
     pub(crate) made: u64,
-    /// Whether the next job is to learn of a boundary's place.
+    /// Whether a boundary's place is to be sent with the next job.
     pub(crate) is_moved: bool,
     /// Whether it has been inserted again.
     is_anew: bool,
-    /// Why nothing can be made of its form: it is not tried again.
+    /// Why its form was refused: it is not tried again.
     pub(crate) refused: Option<SalvaError>,
 }
 
@@ -48,7 +48,7 @@ impl Form {
     }
 }
 
-/// What is inserted again starts anew, unlike what is merely changed.
+/// Restarts a solid that is inserted again, unlike one that is merely changed.
 pub(crate) fn start_anew<T: Component>(
     inserted: On<Insert, T>,
     mut simulation: ResMut<Simulation>,
@@ -70,7 +70,7 @@ type Solids<'w, 's, T, F = ()> = Query<
     F,
 >;
 
-/// Tells of boundaries and bodies that are new, other than they were, elsewhere, or gone.
+/// Sends new, changed, moved and removed boundaries and bodies to the simulation.
 pub(crate) fn gather_solids(
     mut simulation: ResMut<Simulation>,
     boundaries: Solids<SalvaBoundary, Without<SalvaBody>>,
@@ -152,7 +152,7 @@ pub(crate) fn gather_solids(
 }
 
 impl Simulation {
-    /// What was refused for a mesh that has become another.
+    /// Retries what was refused for a mesh that has changed.
     fn try_again(&mut self, mesh: AssetId<Mesh>) {
         for known in self.solids.values_mut() {
             known.is_anew |= known.refused.is_some() && known.form.mesh == Some(mesh);
@@ -220,7 +220,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Tells of a solid of a new form. `told_before` is what was told of its place, if it goes on.
+    /// Sends a solid of a new form. `told_before` is the number of commands up to its place, if it
+    /// goes on.
     fn make(
         &mut self,
         entity: Entity,

@@ -1,4 +1,4 @@
-//! What the simulation is told, and what it tells.
+//! Commands to the simulation, and its reports.
 
 use std::time::Duration;
 
@@ -39,7 +39,7 @@ pub(crate) enum Command {
     RemoveSolid(Id),
 }
 
-/// What is to be done in one go.
+/// The work to do in one go.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Job {
     pub(crate) steps: u32,
@@ -56,7 +56,7 @@ pub(crate) struct Job {
     pub(crate) bounds: [Vec3; 2],
 }
 
-/// What became of a job.
+/// The result of a job.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Report {
     /// s.
@@ -67,13 +67,13 @@ pub(crate) struct Report {
     pub(crate) broken: usize,
     /// Solids whose surface takes too many particles.
     pub(crate) unsampled: Vec<Id>,
-    /// Solids that nothing could be made of.
+    /// Solids whose shape could not be made.
     pub(crate) unmade: Vec<Id>,
 }
 
 impl Command {
-    /// Joins those that wait, and takes out what it makes needless: while time stands still, they
-    /// would become ever more.
+    /// Joins the waiting commands, and removes those that it makes needless: while time is paused,
+    /// they would pile up.
     pub(crate) fn join(self, waiting: &mut Vec<Self>) {
         waiting.retain(|old| !self.replaces(old));
         waiting.push(self);
@@ -116,7 +116,7 @@ impl Command {
 }
 
 impl World {
-    /// Applies `commands` in their order, with which it has been `told` so many.
+    /// Applies `commands` in order; `told` is the number of commands given with them.
     pub(crate) fn apply(&mut self, commands: impl IntoIterator<Item = Command>, told: u64) {
         for command in commands {
             self.apply_one(command);

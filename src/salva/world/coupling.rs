@@ -1,9 +1,9 @@
-//! Solids as salva sees them in a step: surface particles where liquid is near, and what the
-//! liquid does to them.
+//! Solids in salva during a step: surface particles where liquid is near, and the liquid's forces
+//! on them.
 //!
-//! salva's own coupling with rapier is not used: it asks for a body's velocity at points that it
-//! has in the body's frame as if they were in the world's, and it takes every surface particle
-//! along, near liquid or not.
+//! salva's own coupling with rapier is not used: it evaluates a body's velocity at points in the
+//! body's frame as if they were in the world's, and it includes every surface particle, near liquid
+//! or not.
 
 use std::{collections::BTreeMap, sync::RwLock};
 

@@ -1,4 +1,4 @@
-//! What acts on a liquid beside pressure and gravity.
+//! Forces on a liquid other than pressure and gravity.
 
 use rayon::prelude::*;
 use salva3d::{
@@ -66,7 +66,7 @@ impl NonPressureForce for Friction {
                             positions[i] - positions[c.j],
                             velocities[i] - velocities[c.j],
                         );
-                        // By the mean of both densities: what one gets, the other gives.
+                        // By the mean of both densities, so that the forces on both are opposite.
                         let density = 0.5 * (densities[i] + densities[c.j]);
                         let volume = volumes[c.j] * rest_density / density;
                         *acceleration += c.gradient * (viscosity * volume * rate);

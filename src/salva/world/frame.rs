@@ -13,7 +13,7 @@ pub(crate) struct Frame {
     pub(crate) applied: u64,
     pub(crate) liquids: Vec<LiquidFrame>,
     pub(crate) bodies: Vec<(Id, Isometry3d)>,
-    /// Of solids that feel: force (N) and torque (N m) of the liquid, means over the job.
+    /// Loads of the liquid on solids: force (N) and torque (N m), means over the job.
     pub(crate) loads: Vec<(Id, Vec3, Vec3)>,
 }
 
@@ -38,8 +38,8 @@ impl Frame {
     }
 }
 
-/// Where the particles of `to` are a `share` of the way from `from` to it. New ones are where
-/// they are in `to`; those that have gone are left out.
+/// Interpolated positions of the particles of `to`, a `share` of the way from `from` to it. New
+/// ones are where they are in `to`; those that have gone are left out.
 pub(crate) fn blend<'a>(
     from: Option<&'a LiquidFrame>,
     to: &'a LiquidFrame,

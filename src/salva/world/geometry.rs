@@ -1,4 +1,4 @@
-//! What a solid is made of: its surface for the liquid, and a collider for other solids.
+//! The geometry of a solid: its surface for the liquid, and a collider for other solids.
 
 use bevy::prelude::*;
 use salva3d::rapier::{
@@ -32,9 +32,9 @@ pub(crate) struct Geometry {
 /// What a geometry is made of. Meshes may take long: they become one in a job.
 pub(crate) enum Recipe {
     Made(Geometry),
-    /// A surface with liquid where its faces look.
+    /// A surface with liquid on its front side.
     Mesh(Vec<Triangle>),
-    /// What the convex hull is about.
+    /// Triangles within the convex hull.
     Hull(Vec<Triangle>),
 }
 
@@ -49,10 +49,10 @@ impl Recipe {
     }
 }
 
-/// What is sampled.
+/// The surface to sample.
 #[derive(Clone)]
 pub(crate) enum Surface {
-    /// Faces that look at the liquid.
+    /// Faces with their front side towards the liquid.
     Triangles(Vec<Triangle>),
     /// All of y = 0, seen from above.
     Plane,
@@ -135,7 +135,7 @@ impl Geometry {
         }
     }
 
-    /// A surface with liquid where its faces look. None where there is no face.
+    /// A surface with liquid on its front side. None where there is no face.
     fn mesh(faces: Vec<Triangle>) -> Option<Self> {
         let shell = shell(&faces)?;
         Some(Self {

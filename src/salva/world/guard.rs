@@ -1,4 +1,4 @@
-//! What keeps particles on their side of a surface however fast they are.
+//! Keeps particles on their side of a surface, however fast they are.
 //!
 //! Pressure alone lets fast particles through between the particles of a wall. Here every
 //! particle's way through a step is a ray, in the frame of each solid, and ends where it meets one.

@@ -48,7 +48,7 @@ pub(crate) struct Limits {
     pub(crate) lifetime: f32,
     /// The oldest make room.
     pub(crate) capacity: usize,
-    /// Into a space in which they stay between two corners.
+    /// The transform into a space, and the corners of the box in it that they stay in.
     pub(crate) bounds: Option<(Mat4, [Vec3; 2])>,
 }
 
@@ -74,14 +74,14 @@ pub(crate) struct Liquid {
     /// When they came in, s of simulated time.
     pub(crate) born: Vec<f64>,
     pub(crate) limits: Limits,
-    /// Whether particles have not been looked at yet: those within solids are taken out.
+    /// Whether particles are not checked yet: those within solids are removed.
     pub(crate) is_fresh: bool,
 }
 
 /// Volume of a particle of `radius`: such that particles two radii apart, on a lattice, have
 /// just the rest density.
 ///
-/// salva's own is 0.8 of a cube, at which a lattice sinks together by a fifth of its height.
+/// salva's own is 0.8 of a cube, at which a lattice collapses by a fifth of its height.
 pub(crate) fn particle_volume(radius: f32) -> f32 {
     let spacing = 2.0 * radius;
     let support = SMOOTHING * spacing;
@@ -122,7 +122,7 @@ impl Liquid {
         }
     }
 
-    /// Adds those that have room beside the others: a nozzle lets out no more than fits through.
+    /// Adds those that have room beside the others: a nozzle emits no more than fits through.
     pub(crate) fn squeeze_in(
         &mut self,
         world: &mut LiquidWorld,
@@ -162,7 +162,7 @@ impl Liquid {
         self.add(world, &newborn, now)
     }
 
-    /// Adds what is finite, and tells how many were not.
+    /// Adds the finite particles, and returns how many were not finite.
     pub(crate) fn add(&mut self, world: &mut LiquidWorld, newborn: &Newborn, now: f64) -> usize {
         let volume = particle_volume(world.particle_radius());
         let Some(fluid) = world.fluids_mut().get_mut(self.handle) else {

@@ -1,5 +1,5 @@
-//! The simulation itself: salva's liquid and rapier's bodies. It knows nothing of Bevy's world and
-//! lives where it is sent to.
+//! The simulation itself: salva's liquid and rapier's bodies. It does not depend on Bevy's world
+//! and can move between threads.
 
 mod command;
 mod convert;
@@ -38,10 +38,10 @@ use self::{
 /// The name of an entity in the simulation.
 pub(crate) type Id = u64;
 
-/// The solver goes on until the mean density that motion alone would lead to is above the rest by no
-/// more than this, or has done its most iterations. Measured on a column at rest: a third of it
-/// makes its height better by 1 % and a step dearer by a factor of two; three times as much
-/// makes no step cheaper.
+/// The solver iterates until the mean density predicted from motion alone exceeds the rest density
+/// by no more than this, or until its most iterations. Measured on a column at rest: a third of it
+/// makes its height better by 1 % and a step twice as expensive; three times as much makes no step
+/// cheaper.
 const DENSITY_ERROR: f32 = 0.01;
 const MAX_ITERATIONS: usize = 30;
 
@@ -56,7 +56,7 @@ pub(crate) struct World {
     nearby: Nearby,
     /// Positions before a step.
     before: Vec<Vec<LiquidVector>>,
-    /// What surfaces have stopped in a step.
+    /// Particles that surfaces have stopped in a step.
     stops: Vec<Stop>,
     /// m/s, the fastest particle of the last step.
     fastest: f32,
@@ -86,7 +86,7 @@ impl Default for World {
 }
 
 fn new_liquid_world(radius: f32) -> LiquidWorld {
-    // salva's DFSPH takes every solid for one at rest in its divergence solve: what moves would stir
+    // salva's DFSPH treats every solid as at rest in its divergence solve: moving ones would stir
     // the liquid for ever.
     let mut solver: IISPHSolver = IISPHSolver::new();
     solver.max_density_error = DENSITY_ERROR;
@@ -99,7 +99,7 @@ fn default<T: Default>() -> T {
 }
 
 impl World {
-    /// Hands out the state as it is; loads are means over the `simulated` seconds of the job.
+    /// Writes the current state; loads are means over the `simulated` seconds of the job.
     fn write(&self, frame: &mut Frame, simulated: f32) {
         frame.time = self.time;
         frame.applied = self.applied;

@@ -14,13 +14,14 @@ pub(crate) type Triangle = [Vec3; 3];
 /// A layer of particles counts for more than a layer of a lattice, as each has the volume of all
 /// that is missing about it (Akinci et al. 2012, equation 4): at one radius liquid that fills a
 /// tank as a lattice is 6 % too dense at the walls, and jumps in the first step, the higher the
-/// shorter the step. At 1.2 it has just its rest density: there the kernel's integral over the plane
-/// through the samples is that of a layer of the lattice. At rest particles then lie some tenth of a
-/// radius nearer to the wall than in the lattice: a column 16 radii wide is 4 % lower for it.
+/// shorter the step. At 1.2 it has just its rest density: there the kernel's integral over the
+/// plane through the samples is that of a layer of the lattice. At rest particles then lie some
+/// tenth of a radius nearer to the wall than in the lattice: a column 16 radii wide is 4 % lower
+/// for it.
 pub(crate) const DEPTH: f32 = 1.2;
 /// How far a corner may move over the depth it is moved for: sharper edges are blunted.
 const LONGEST_MITER: f32 = 2.0;
-/// Neighbouring samples are at least this far apart, over the spacing asked for.
+/// Neighbouring samples are at least this far apart, over the requested spacing.
 const CLOSEST: f32 = 0.74;
 /// More samples than this are more than any machine simulates.
 const MOST_SAMPLES: f32 = 2e6;

@@ -1,4 +1,4 @@
-//! Boundaries and bodies: what liquid runs against.
+//! Boundaries and bodies: the solids that liquid collides with.
 
 use bevy::prelude::*;
 use salva3d::{
@@ -20,7 +20,7 @@ use super::{
 /// How a solid moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Motion {
-    /// As it is told.
+    /// By its transform.
     Kinematic,
     /// By its weight and what pushes it.
     Dynamic {
@@ -37,12 +37,12 @@ pub(crate) struct Contact {
     pub(crate) restitution: f32,
 }
 
-/// What may change while a solid goes on.
+/// Properties that may change while a solid goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Traits {
     pub(crate) motion: Motion,
     pub(crate) contact: Contact,
-    /// Whether what liquid does to it is wanted.
+    /// Whether the liquid's load on it is recorded.
     pub(crate) feels: bool,
 }
 
@@ -83,9 +83,9 @@ pub(crate) struct Solid {
     pub(crate) velocity: Vec3,
     pub(crate) angular_velocity: Vec3,
     pub(crate) center: Vec3,
-    /// Whether what liquid does to it is wanted; that costs a lock for every contact.
+    /// Whether the liquid's load on it is recorded; that costs a lock for every contact.
     pub(crate) feels: bool,
-    /// What liquid has given it in this step, N s and N m s about the centre.
+    /// Impulse of the liquid in this step, N s and N m s about the centre.
     pub(crate) push: Vec3,
     pub(crate) turn: Vec3,
     /// The same, summed up over the job.
@@ -151,8 +151,7 @@ impl Solid {
         matches!(self.motion, Motion::Dynamic { .. })
     }
 
-    /// Takes other traits on in its motion. Only a start velocity that is another than it was is
-    /// given to it.
+    /// Changes its traits and keeps its motion. Only a changed start velocity is applied to it.
     pub(crate) fn alter(&mut self, rigid_world: &mut PhysicsWorld, traits: Traits) {
         let start = traits.motion.start();
         if let Some(body) = rigid_world.bodies.get_mut(self.body) {
@@ -173,7 +172,7 @@ impl Solid {
         self.read_body(rigid_world);
     }
 
-    /// A body goes on where one of another shape was, as that moved.
+    /// Continues the place and the motion of a body of another shape.
     pub(crate) fn go_on(&mut self, rigid_world: &mut PhysicsWorld, before: &Self) {
         if !(self.is_dynamic() && before.is_dynamic()) {
             return;
@@ -209,7 +208,7 @@ impl Solid {
         self.sample(liquid_world.particle_radius())
     }
 
-    /// At once, without a velocity.
+    /// Moves it at once, without a velocity.
     pub(crate) fn jump(&mut self, rigid_world: &mut PhysicsWorld, at: Isometry3d) {
         (self.before, self.at, self.target) = (at, at, at);
         (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
@@ -270,7 +269,7 @@ impl Solid {
     }
 
     /// How much faster an impulse of 1 N s at a world-space `place` along `normal` makes it there:
-    /// 1/kg, 0 for what moves as it is told.
+    /// 1/kg, 0 for kinematic solids.
     pub(crate) fn mobility(&self, rigid_world: &PhysicsWorld, place: Vec3, normal: Vec3) -> f32 {
         let Some(body) = rigid_world
             .bodies
@@ -291,7 +290,7 @@ impl Solid {
         self.turn += (place - self.center).cross(impulse);
     }
 
-    /// Hands a body what the liquid has given it.
+    /// Applies the liquid's impulse to a body.
     pub(crate) fn take_push(&mut self, rigid_world: &mut PhysicsWorld) {
         let [push, turn] = [&mut self.push, &mut self.turn].map(core::mem::take);
         if !push.is_finite() || !turn.is_finite() {

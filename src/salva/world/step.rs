@@ -50,7 +50,7 @@ impl World {
         }
     }
 
-    /// One step, in as many substeps as its fastest particle asks for.
+    /// One step, in as many substeps as its fastest particle needs.
     fn step(&mut self, job: &Job, left: &mut f32) {
         let solids = self.solids.values().map(|solid| solid.velocity.length());
         let fastest = solids.fold(self.fastest, f32::max) + job.gravity.length() * job.step;
@@ -114,7 +114,7 @@ impl World {
                 }
                 let position = from_liquid(&fluid.positions[i]);
                 let speed = from_liquid(&fluid.velocities[i]).length();
-                // Neither is what is not a number.
+                // NaN is not sound.
                 let is_sound = position.is_finite() && speed <= job.max_speed;
                 let is_inside = is_between(position, low, high)
                     && limits.bounds.is_none_or(|(space, [low, high])| {

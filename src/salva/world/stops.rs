@@ -1,5 +1,5 @@
-//! Particles that run against surfaces: found on their ways through a step, and what they and the
-//! solids give each other.
+//! Particles that hit surfaces: found along their paths through a step, and their exchange of
+//! momentum with the solids.
 
 use bevy::prelude::*;
 use rayon::prelude::*;
@@ -85,11 +85,11 @@ impl Ways<'_> {
     }
 }
 
-/// Puts particles where they were stopped, and exchanges momentum as when all that a solid has
-/// stopped goes on with it.
+/// Puts particles where they were stopped, and exchanges momentum as if everything that a solid has
+/// stopped moved on with it.
 ///
-/// Each on its own would hand a light body more than it can take: many together would throw it
-/// back faster than they came.
+/// Handled one by one, many particles together would hand a light body more than it can take, and
+/// throw it back faster than they came.
 pub(crate) fn apply(
     stops: &[Stop],
     fluids: &mut [Fluid],

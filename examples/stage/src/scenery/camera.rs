@@ -1,13 +1,13 @@
-//! Where to look from.
+//! Cameras.
 
 use bevy::{camera::Hdr, math::bounding::Aabb3d, prelude::*};
 use bevy_panorbit_camera::PanOrbitCamera;
-/// What moves the cameras of [`orbit_camera`], in `PostUpdate`.
+/// The systems that move the cameras of [`orbit_camera`], in `PostUpdate`.
 pub use bevy_panorbit_camera::PanOrbitCameraSystemSet;
 
 /// From the box towards the eye: from the right and a little above.
 const TOWARDS_EYE: Vec3 = Vec3::new(0.45, 0.42, 1.0);
-/// How much larger than the box the framed part is.
+/// Size of the framed part over that of the box.
 const MARGIN: f32 = 1.15;
 
 /// A camera at `eye` that looks at `target`; in a window the mouse turns it around the target.
@@ -17,7 +17,7 @@ pub fn orbit_camera(eye: Vec3, target: Vec3) -> impl Bundle {
         // Else Bevy tone-maps the scene but not the sky behind it.
         Hdr,
         Transform::from_translation(eye).looking_at(target, Vec3::Y),
-        // Without a window there is no plugin to move it, and it is only data.
+        // Without a window no plugin moves it, and it is only data.
         PanOrbitCamera {
             focus: target,
             ..default()
@@ -25,8 +25,8 @@ pub fn orbit_camera(eye: Vec3, target: Vec3) -> impl Bundle {
     )
 }
 
-/// The nearest `(eye, target)` in a three-quarter view at which all of `inside` is seen, with a
-/// small margin.
+/// The nearest `(eye, target)` in a three-quarter view that shows all of `inside`, with a small
+/// margin.
 ///
 /// `fov` is the vertical field of view in radians (as in `PerspectiveProjection`), `aspect` the
 /// width over the height of the view.

@@ -1,5 +1,5 @@
-//! Cubemaps made on the CPU. Everything goes by direction rather than by face, so that faces meet
-//! without seams.
+//! Cubemaps made on the CPU. Everything is computed by direction rather than by face, so that faces
+//! meet without seams.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -48,8 +48,8 @@ impl Cubemap {
         })
     }
 
-    /// What a matt surface facing each direction receives: the mean over its hemisphere, weighted
-    /// by the cosine.
+    /// The light that a matt surface facing each direction receives: the mean over its hemisphere,
+    /// weighted by the cosine.
     pub(crate) fn diffused(&self, side: usize) -> Self {
         let lights: Vec<(Vec3, Vec3, f32)> = self
             .texels

@@ -1,4 +1,4 @@
-//! What stands around the liquid, so that there is something to refract and to reflect.
+//! The surroundings of the liquid, which it refracts and reflects.
 //!
 //! ```
 //! use bevy::{math::bounding::Aabb3d, prelude::*};
@@ -31,7 +31,7 @@ pub use sky::Sky;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 
-/// A system parameter that puts up scenery. Lengths are in metres, as in Bevy's lights.
+/// A system parameter that builds scenery. Lengths are in metres, as in Bevy's lights.
 #[derive(SystemParam)]
 pub struct Scenery<'w, 's> {
     /// Spawns entities.

@@ -1,4 +1,4 @@
-//! A row of coloured pillars: what is seen through the liquid is told apart by colour.
+//! A row of coloured pillars, distinguished by colour when seen through the liquid.
 
 use bevy::{math::bounding::Aabb3d, prelude::*};
 

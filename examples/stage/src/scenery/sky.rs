@@ -18,7 +18,7 @@ const CLOUD: Vec3 = Vec3::new(1.35, 1.36, 1.40);
 const GLOW: Vec3 = Vec3::new(1.0, 0.86, 0.62);
 const GROUND: Vec3 = Vec3::new(0.32, 0.31, 0.28);
 /// Unit: cd/m² for a radiance of 1. With Bevy's default exposure (EV100 9.7) 1000 is where white
-/// begins; tone mapping asks for more.
+/// begins; tone mapping needs more.
 const BRIGHTNESS: f32 = 1600.0;
 
 /// Texels along a face, and the mip levels for rougher and rougher reflections.
@@ -26,7 +26,7 @@ const SIDE: usize = 256;
 const LEVELS: usize = 7;
 const DIFFUSE_SIDE: usize = 8;
 
-/// A sky to look at and to be lit by.
+/// A sky as background and as light.
 #[derive(Debug, Clone)]
 pub struct Sky {
     /// `Rgba16Float` cube; its mip levels are blurred for rough reflections.
@@ -57,14 +57,14 @@ impl Sky {
         }
     }
 
-    /// Both, for a camera.
+    /// The sky as background, light and reflection, for a camera.
     pub fn bundle(&self) -> impl Bundle + use<> {
         (self.skybox(), self.light())
     }
 }
 
 impl Scenery<'_, '_> {
-    /// Builds the sky (some tenths of a second), its sun in the direction `to_sun`.
+    /// Builds the sky, with its sun in the direction `to_sun`; takes some tenths of a second.
     pub fn sky(&mut self, to_sun: Vec3) -> Sky {
         let to_sun = to_sun.normalize_or(Vec3::Y);
         let sharp = Cubemap::from_fn(SIDE, |direction| radiance(direction, to_sun));

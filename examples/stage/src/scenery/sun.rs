@@ -8,10 +8,10 @@ use bevy::{
 use super::Scenery;
 
 impl Scenery<'_, '_> {
-    /// A sun in the direction `to_sun`, slightly warm, at 10,000 lux: what Bevy's default exposure
-    /// is made for. `reach` is how far from the camera its shadows are drawn, if `shadows` are.
+    /// A sun in the direction `to_sun`, slightly warm, at 10,000 lux, which suits Bevy's default
+    /// exposure. Shadows, if `shadows` is set, are drawn up to `reach` from the camera.
     pub fn sun(&mut self, to_sun: Vec3, reach: f32, shadows: bool) -> Entity {
-        // The builder insists on bounds in order, whatever the reach.
+        // The builder requires bounds in order, whatever the reach.
         let reach = reach.max(0.01);
         let cascades = CascadeShadowConfigBuilder {
             num_cascades: 2,

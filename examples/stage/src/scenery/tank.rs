@@ -7,7 +7,8 @@ use super::Scenery;
 /// Thickness of the walls over the longest side of the tank.
 const THICKNESS: f32 = 0.012;
 const GLASS: Color = Color::srgba(0.72, 0.9, 0.9, 0.07);
-/// Where one looks along the glass rather than through it, it is as green as its iron makes it.
+/// Colour of the edges, where one looks along the glass rather than through it: green from its
+/// iron.
 const EDGE: Color = Color::srgba(0.55, 0.8, 0.76, 0.45);
 
 impl Scenery<'_, '_> {

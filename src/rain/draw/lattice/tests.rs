@@ -26,7 +26,7 @@ fn quads(eye: &Eye, clock: &RainClock) -> Vec<GpuQuad> {
     quads
 }
 
-/// Cells of drops one by one, whose streaks may be 0.3 m long.
+/// Cells of individually drawn drops, whose streaks may be 0.3 m long.
 fn cells(eye: &Eye, clock: &RainClock) -> Vec<GpuQuad> {
     let mut quads = Vec::new();
     let content = Content::Drops(0.3);
@@ -42,8 +42,8 @@ fn cells(eye: &Eye, clock: &RainClock) -> Vec<GpuQuad> {
     quads
 }
 
-/// Whatever is near and in view lies in a cell that is drawn, and in one only: streaks above the
-/// view, too, whose heads are below it.
+/// Every point near the eye and in view lies in exactly one drawn cell; so do the heads of streaks
+/// that are below the view.
 #[test]
 fn cells_of_drops_fill_the_air_near_the_eye() {
     for clock in [
@@ -97,7 +97,8 @@ fn voxels_are_in_view() {
     }
 }
 
-/// As many metres of voxels as there are metres of way beyond the drops drawn one by one. Counted as the billboards' shader counts, over many places of the eye.
+/// The voxels along a ray add up to its length beyond the individually drawn drops. Counted as in
+/// the billboards' shader, over many places of the eye.
 #[test]
 fn every_ray_goes_through_as_much_rain_as_it_is_long() {
     for (clock, pitch) in [
@@ -132,7 +133,7 @@ fn every_ray_goes_through_as_much_rain_as_it_is_long() {
     }
 }
 
-/// What `billboards.wgsl` counts of a voxel for a ray from the eye. Unit: m.
+/// Length of a ray from the eye that `billboards.wgsl` counts for a voxel. Unit: m.
 fn way_in(quad: &GpuQuad, ray: Vec3, axis: Vec3) -> f32 {
     let across = |way: Vec3| way - way.dot(axis) * axis;
     let normal = across(quad.center).normalize();
@@ -171,7 +172,7 @@ fn a_jump_of_a_kilometre_is_like_any_other_place() {
         &eye_at(far, far + Vec3::NEG_Z, perspective()),
         &RainClock::default(),
     );
-    // 1000 m are whole voxels of every size but the largest, which reach not so near.
+    // 1000 m are whole voxels of every size but the largest, which do not reach this near.
     assert_eq!(here.len(), there.len());
     for quad in &here {
         let same = there.iter().any(|other| {
@@ -180,7 +181,7 @@ fn a_jump_of_a_kilometre_is_like_any_other_place() {
         });
         assert!(same, "{quad:?}");
     }
-    // Yet the drops are others.
+    // Yet the drops differ.
     let shared = here
         .iter()
         .filter(|q| there.iter().any(|o| o.hash == q.hash))
@@ -223,7 +224,8 @@ fn an_orthographic_eye_sees_rain_all_over() {
     let right = eye.forward.cross(Vec3::Y).normalize();
     let sides: Vec<f32> = quads.iter().map(|quad| quad.center.dot(right)).collect();
     assert!(sides.iter().any(|&x| x < -7.0) && sides.iter().any(|&x| x > 7.0));
-    // The lens is tilted by a fifth: what leans against its plane may be a little farther.
+    // The view is tilted by a fifth: billboards that lean against its plane may be a little
+    // farther.
     assert!(
         quads
             .iter()
@@ -231,7 +233,7 @@ fn an_orthographic_eye_sees_rain_all_over() {
     );
 }
 
-/// Straight up the drops one by one end where they are points.
+/// Straight up, individually drawn drops end where they are points.
 #[test]
 fn steep_views_cost_no_more_the_farther_they_see() {
     let count = |distance: f32| {

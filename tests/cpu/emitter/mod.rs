@@ -1,0 +1,111 @@
+//! Emitters: how many particles come out and where, how they fly, bounce, slide and vanish, against
+//! closed forms.
+
+mod births;
+mod bounces;
+mod clock;
+mod ends;
+mod flight;
+mod settings;
+mod solids;
+
+use std::time::Duration;
+
+use bevy::{prelude::*, shader::Shader, time::TimeUpdateStrategy};
+use bevy_fluid::{EmittedParticles, prelude::*};
+
+use fluid_stage::log;
+
+const G: f32 = 9.81;
+
+/// One particle at a time and in a place, along a line: what closed forms are about.
+const EXACT: ParticleEmitter = ParticleEmitter {
+    spread: 0.0,
+    nozzle: 0.0,
+    jitter: 0.0,
+    lifetime: f32::INFINITY,
+    ..ParticleEmitter::DEFAULT
+};
+
+/// The same, one single particle.
+fn one(speed: f32, direction: Vec3) -> ParticleEmitter {
+    ParticleEmitter {
+        rate: 0.0,
+        speed,
+        direction,
+        queued: 1,
+        ..EXACT
+    }
+}
+
+/// An app without a renderer. Its clock has started.
+fn app() -> App {
+    log::listen();
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
+        .init_asset::<Shader>()
+        .add_plugins(FluidPlugin::default());
+    app.finish();
+    app.cleanup();
+    step(&mut app, 0.0);
+    app
+}
+
+/// An app with this emitter, and its entity. Its particles are not shaped, which takes longer than
+/// all else.
+fn emitting(emitter: ParticleEmitter) -> (App, Entity) {
+    let mut app = app();
+    let mut entity = app.world_mut().spawn(emitter);
+    let entity = entity.remove::<SurfaceKernel>().id();
+    (app, entity)
+}
+
+/// Steps by `seconds`.
+fn step(app: &mut App, seconds: f32) {
+    let step = TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(seconds));
+    app.insert_resource(step);
+    app.update();
+}
+
+/// Steps as often as it takes for `seconds` to pass, at `rate` frames a second.
+fn run(app: &mut App, seconds: f32, rate: f32) {
+    for _ in 0..(seconds * rate).round() as u32 {
+        step(app, 1.0 / rate);
+    }
+}
+
+fn particles(app: &App, entity: Entity) -> &EmittedParticles {
+    app.world().get(entity).unwrap()
+}
+
+fn emitter(app: &mut App, entity: Entity) -> Mut<'_, ParticleEmitter> {
+    app.world_mut().get_mut(entity).unwrap()
+}
+
+fn place(app: &mut App, entity: Entity) -> Mut<'_, Transform> {
+    app.world_mut().get_mut(entity).unwrap()
+}
+
+/// The particles as they are drawn, in the world.
+fn drawn(app: &App, entity: Entity) -> Vec<Vec3> {
+    let transform = app.world().get::<GlobalTransform>(entity).unwrap();
+    let fluid = app.world().get::<FluidParticles>(entity).unwrap();
+    let positions = fluid.positions.iter();
+    positions.map(|&p| transform.transform_point(p)).collect()
+}
+
+/// The only particle's place and velocity.
+#[track_caller]
+fn single(app: &App, entity: Entity) -> (Vec3, Vec3) {
+    let particles = particles(app, entity);
+    assert_eq!(particles.len(), 1);
+    (particles.positions()[0], particles.velocities()[0])
+}
+
+#[track_caller]
+fn assert_near(value: f32, expected: f32, slack: f32) {
+    assert!(
+        (value - expected).abs() <= slack,
+        "{value}, expected {expected} ± {slack}"
+    );
+}

@@ -1,0 +1,8 @@
+//! What reads and writes files: recordings, the report, and the examples as programs.
+
+mod examples;
+mod fuzz_files;
+mod program;
+mod recording;
+mod speed_error;
+mod viewer;

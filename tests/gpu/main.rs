@@ -1,0 +1,15 @@
+//! What is drawn, held against the f64 reference and analytic truth.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod debug_views;
+mod fallbacks;
+mod frames;
+mod hard_cases;
+mod layers;
+mod medium;
+mod rain;
+mod random_cameras;
+mod refraction;
+mod smoothing;

@@ -1,0 +1,131 @@
+//! A steady frame allocates nothing: the schedule that all our systems are in, counted.
+
+use std::{fs, path::Path, thread, time::Duration};
+
+use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, shader::Shader};
+use bevy_fluid::{
+    EmittedParticles,
+    prelude::*,
+    recording::{FluidRecording, LoadedFrames, ParticleFrame, RecordingPlayer, RecordingSettings},
+};
+
+use crate::heap;
+
+const STEP: Duration = Duration::from_millis(16);
+
+/// An app without a renderer. Bevy's own executor allocates with many threads, not with one.
+fn app() -> App {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, AssetPlugin::default()))
+        .init_asset::<Shader>()
+        .add_plugins(FluidPlugin::default())
+        .edit_schedule(PostUpdate, |schedule| {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        });
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// Frames of [`PostUpdate`] alone, which all our systems are in. The clock moves on by [`STEP`].
+fn run(app: &mut App, frames: u32) {
+    let world = app.world_mut();
+    // As a thread of rayon's own: another one hands its work over in a queue, of which rayon
+    // allocates a block from time to time.
+    rayon::scope(|_| {
+        for _ in 0..frames {
+            world.resource_mut::<Time>().advance_by(STEP);
+            world.run_schedule(PostUpdate);
+        }
+    });
+}
+
+/// How often memory is asked for in as many frames.
+fn allocations(app: &mut App, frames: u32) -> usize {
+    let before = heap::stats();
+    run(app, frames);
+    let after = heap::stats();
+    after.allocations - before.allocations + after.reallocations - before.reallocations
+}
+
+#[test]
+fn an_emitter_at_its_capacity() {
+    let _alone = heap::alone();
+    // In one task, and in several.
+    for capacity in [3000, 10_000] {
+        let mut app = app();
+        let emitter = ParticleEmitter {
+            capacity,
+            // By age they would vanish a little later.
+            lifetime: 1.1,
+            ..ParticleEmitter::fountain(capacity as f32, 4.0)
+        };
+        let entity = app.world_mut().spawn(emitter).id();
+        app.world_mut().spawn(ParticleCollider::ground());
+        let sphere = ParticleCollider::from(Sphere::new(0.2));
+        app.world_mut()
+            .spawn((sphere, Transform::from_xyz(0.1, 0.6, 0.0)));
+        // Those of every second are the same in number and others in place: buffers of the shape
+        // stage grow to the most of a class.
+        assert!(allocations(&mut app, 300) > 0, "it grows");
+        assert_eq!(allocations(&mut app, 120), 0, "{capacity} particles");
+        let world = app.world();
+        let particles = world.get::<EmittedParticles>(entity).unwrap();
+        assert!(particles.len() as u32 <= capacity);
+        assert!(
+            particles.len() as u32 > 9 * capacity / 10,
+            "{}",
+            particles.len()
+        );
+        let youngest = particles.ages().iter().copied().fold(f32::MAX, f32::min);
+        assert!(youngest < STEP.as_secs_f32(), "births go on");
+    }
+}
+
+#[test]
+fn a_player_whose_frames_are_all_there() {
+    let _alone = heap::alone();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("allocations");
+    fs::create_dir_all(&folder).unwrap();
+    for number in 0..6 {
+        let at = |i: u32| vec3(i as f32, number as f32, 0.0) * 0.05;
+        let frame = ParticleFrame {
+            positions: (0..500).map(at).collect(),
+            // One comes and one goes with every frame.
+            ids: (0..500).map(|i| i + number).collect(),
+            velocities: vec![Vec3::Y; 500],
+            radius: Some(0.05),
+        };
+        frame
+            .write(&folder.join(format!("line_{number}.vtk")))
+            .unwrap();
+    }
+    let mut app = app();
+    let settings = RecordingSettings {
+        rate: 20.0,
+        ..folder.join("line_#.vtk").to_str().unwrap().into()
+    };
+    let recording = FluidRecording::load(app.world().resource::<AssetServer>(), settings);
+    let player = RecordingPlayer::new(recording).repeating();
+    let entity = app.world_mut().spawn(player).id();
+    let is_loaded = |app: &App| {
+        let frames = app.world().get::<LoadedFrames>(entity).unwrap();
+        frames.held() == 6 && frames.loading() == 0
+    };
+    while !is_loaded(&app) {
+        app.update();
+        thread::sleep(Duration::from_millis(1));
+    }
+    // A round, and all that is ever shown has its place.
+    run(&mut app, 60);
+    assert_eq!(allocations(&mut app, 120), 0);
+    let before = app
+        .world()
+        .get::<FluidParticles>(entity)
+        .unwrap()
+        .positions
+        .clone();
+    run(&mut app, 1);
+    let after = &app.world().get::<FluidParticles>(entity).unwrap().positions;
+    assert!(*after != before, "it plays");
+}

@@ -1,0 +1,14 @@
+//! The reference against closed forms.
+
+mod common;
+
+mod camera;
+mod ellipsoids;
+mod flip;
+mod medium;
+mod mesh;
+mod metrics;
+mod sampling;
+mod surfaces;
+mod tracer;
+mod yu_turk;

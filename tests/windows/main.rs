@@ -1,0 +1,3 @@
+//! What lives in a window.
+
+mod inspector;
