@@ -186,7 +186,13 @@ impl Plugin for FluidPlugin {
     }
 }
 
-/// Compiles the README's code with the doc tests when the features that it shows are enabled.
+/// The code of README and docs, compiled as doc tests with the features it needs.
 #[cfg(all(doctest, feature = "recordings", feature = "salva"))]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod documents {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/live_simulation.md")]
+    struct LiveSimulation;
+    #[doc = include_str!("../docs/recordings.md")]
+    struct Recordings;
+}

@@ -226,12 +226,12 @@ pub(super) fn check_emitters(
     }
     for (entity, emitter) in &emitters {
         if let Some(error) = of_emitters.of(entity, emitter.validate()) {
-            warn!("emitter {entity}: {error}; it goes on with the nearest value in range");
+            warn!("emitter {entity}: {error}; it is clamped");
         }
     }
     for (entity, collider) in &colliders {
         if let Some(error) = of_colliders.of(entity, collider.validate()) {
-            warn!("collider {entity}: {error}; it goes on with the nearest value in range");
+            warn!("collider {entity}: {error}; it is clamped");
         }
     }
 }

@@ -31,7 +31,7 @@ pub enum RainError {
         max: f32,
     },
     /// A shelter's box is invalid.
-    #[error("`RainShelter::half_size` is {half_size} at a scale of {scale}: there is no such box")]
+    #[error("`RainShelter::half_size` is {half_size} at a scale of {scale}: not a box")]
     Shelter {
         /// Half of its sides in the entity's space.
         half_size: Vec3,

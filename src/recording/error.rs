@@ -9,7 +9,7 @@ use super::frame::FrameError;
 #[non_exhaustive]
 pub enum RecordingError {
     /// The pattern of the frames' names is invalid.
-    #[error("`{pattern}` is no pattern of frames: {reason}")]
+    #[error("`{pattern}` is an invalid pattern of frames: {reason}")]
     Pattern {
         /// The pattern.
         pattern: String,
@@ -52,7 +52,7 @@ pub enum RecordingError {
         last: u32,
     },
     /// More frames are requested than a recording may have.
-    #[error("`{pattern}` asks for more than {most} frames")]
+    #[error("`{pattern}` names more than {most} frames")]
     TooManyFrames {
         /// The pattern.
         pattern: String,
@@ -60,7 +60,7 @@ pub enum RecordingError {
         most: u32,
     },
     /// The `.fluid.ron` file cannot be read.
-    #[error("{name} is no description of a recording: {reason}")]
+    #[error("{name} is an invalid description of a recording: {reason}")]
     Description {
         /// The file.
         name: String,

@@ -198,7 +198,7 @@ pub(crate) fn advance(
     if settings.is_changed()
         && let Some(error) = complaints.of(Entity::PLACEHOLDER, settings.validate())
     {
-        warn!("{error}; the nearest that makes sense is taken");
+        warn!("{error}; it is clamped");
     }
     let settings = settings.clamped();
     let delta = if settings.paused {

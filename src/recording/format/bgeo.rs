@@ -44,7 +44,7 @@ struct Place {
 
 fn parse(mut bytes: Bytes) -> Result<ParticleFrame, String> {
     if bytes.take(5)? != b"BgeoV" {
-        return Err("it is no classic .bgeo".into());
+        return Err("not a classic .bgeo file".into());
     }
     let version = bytes.int()?;
     if version != 5 {

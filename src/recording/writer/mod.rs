@@ -145,7 +145,7 @@ fn frame_due(
     written.last = Some(number);
     let pattern = FramePattern::parse(&writer.frames)?;
     if !pattern.is_numbered() {
-        return Err(refuse("there is no number in it (`####`)"));
+        return Err(refuse("it has no number (`####`)"));
     }
     Ok(Some((number, pattern)))
 }

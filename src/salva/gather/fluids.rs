@@ -72,7 +72,7 @@ pub(crate) fn gather_fluids(
         if fluid.is_changed()
             && let Some(error) = settings_complaints.of(entity, fluid.validate())
         {
-            warn!("fluid {entity}: {error}; it is simulated with the nearest that makes sense");
+            warn!("fluid {entity}: {error}; it is clamped");
         }
         if let Some(emitter) = emitter {
             let radius = emitter.clamped().particle_radius;

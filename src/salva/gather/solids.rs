@@ -109,7 +109,7 @@ pub(crate) fn gather_solids(
         if boundary.is_changed()
             && let Some(error) = settings_complaints.of(entity, boundary.validate())
         {
-            warn!("boundary {entity}: {error}; it is simulated with the nearest that makes sense");
+            warn!("boundary {entity}: {error}; it is clamped");
         }
         let own = boundary.clamped();
         let traits = Traits {
@@ -129,7 +129,7 @@ pub(crate) fn gather_solids(
         if body.is_changed()
             && let Some(error) = settings_complaints.of(entity, body.validate())
         {
-            warn!("body {entity}: {error}; it is simulated with the nearest that makes sense");
+            warn!("body {entity}: {error}; it is clamped");
         }
         let own = body.clamped();
         let traits = Traits {
