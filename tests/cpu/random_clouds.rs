@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 use bevy_fluid::shape::{FluidSplats, ShapeWorkspace, Splat, SurfaceKernel};
 use proptest::prelude::*;
 
-use crate::oracle::Random;
+use crate::oracle::{self, Random};
 
 /// Of a cloud of scale 1.
 const RADIUS: f32 = 0.025;

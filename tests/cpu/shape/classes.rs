@@ -3,7 +3,7 @@
 use bevy::math::{EulerRot, Quat, Vec3};
 use bevy_fluid::shape::SurfaceKernel;
 
-use super::{BULK, R, SPACING, assert_sphere, find, shape, shape_with};
+use super::{BULK, R, SPACING, assert_sphere, find, lattice, shape, shape_with};
 
 #[test]
 fn the_spray_threshold_counts_neighbors() {

@@ -4,7 +4,7 @@ use bevy::math::{EulerRot, Mat3, Quat, Vec3};
 use bevy_fluid::shape::{FluidSplats, ShapeError, ShapeWorkspace, Splat, SurfaceKernel};
 use proptest::prelude::*;
 
-use crate::oracle::{Random, lattice};
+use crate::oracle::{self, Random, lattice};
 
 mod axes;
 mod classes;

@@ -16,7 +16,6 @@ mod views;
 use crate::common::*;
 use bevy::{prelude::*, render::render_resource::Texture};
 use bevy_fluid::{
-    ScreenSpaceFluid,
     prelude::*,
     render::Layers,
     shape::{FluidSplats, ShapeWorkspace, Splat},

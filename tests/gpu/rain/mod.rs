@@ -7,7 +7,7 @@ mod opacity;
 
 use core::time::Duration;
 
-use crate::common::{Lens, View, only, settle, spawn_box};
+use crate::common::{self, Lens, View, only, settle, spawn_box};
 use bevy::{
     camera::{Exposure as CameraExposure, Viewport, visibility::RenderLayers},
     core_pipeline::tonemapping::DebandDither,
