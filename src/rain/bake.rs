@@ -35,11 +35,27 @@ pub const BAKE_TIME: DiagnosticPath = DiagnosticPath::const_new("rain/bake_time"
 #[derive(Resource, Clone, Copy)]
 pub(crate) struct SynchronousBake(pub(crate) bool);
 
+/// How many devices have been lost so far, and all textures with them. Shared by both worlds.
+#[derive(Resource, Clone, Default)]
+pub(crate) struct LostDevices(Arc<AtomicU32>);
+
+impl LostDevices {
+    pub(crate) fn add(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn count(&self) -> u32 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
 /// The current textures of streaks and those being drawn.
 #[derive(Resource, Default)]
 pub struct BakedStreaks {
     ready: Option<ReadyStreaks>,
     running: Option<RunningBake>,
+    /// Devices lost before the current textures were drawn.
+    lost_devices: u32,
     /// Smoothed length of a frame. Unit: s.
     frame: Option<f32>,
 }
@@ -83,14 +99,17 @@ pub(crate) fn bake_streaks(
     rains: Query<&Rain>,
     settings: Res<RainStreaks>,
     synchronous: Res<SynchronousBake>,
+    lost_devices: Res<LostDevices>,
     time: Res<Time>,
     mut streaks: ResMut<BakedStreaks>,
     mut images: ResMut<Assets<Image>>,
     mut diagnostics: Diagnostics,
 ) {
     // Without rain there are no textures; while the rate is 0, they are left as they are.
-    if rains.is_empty() {
+    let lost_devices = lost_devices.count();
+    if rains.is_empty() || streaks.lost_devices != lost_devices {
         streaks.ready = None;
+        streaks.lost_devices = lost_devices;
     }
     let is_raining = rains.iter().any(|rain| rain.clamped().rate > 0.0);
     if !is_raining && streaks.running.is_none() {

@@ -76,6 +76,7 @@ impl Plugin for RainPlugin {
             .register_type::<RainStreaks>()
             .init_resource::<RainStreaks>()
             .init_resource::<BakedStreaks>()
+            .init_resource::<bake::LostDevices>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
             .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))

@@ -110,8 +110,8 @@ pub struct ViewSurroundings {
 /// The scene's distant lights.
 #[derive(Resource, Default)]
 pub(crate) struct FluidLights {
+    /// Unused slots are dark.
     pub(crate) lights: [GpuDirectionalLight; MAX_LIGHTS],
-    pub(crate) count: u32,
     /// Mean over all directions of all directional lights, cd/m².
     mean: Vec3,
     /// Ambient light for cameras without their own, cd/m².
@@ -135,7 +135,7 @@ pub(crate) fn extract_lights(
     ambient: Extract<Option<Res<GlobalAmbientLight>>>,
     mut extracted: ResMut<FluidLights>,
 ) {
-    extracted.count = 0;
+    extracted.lights = default();
     extracted.mean = Vec3::ZERO;
     extracted.ambient = ambient
         .as_ref()
@@ -145,12 +145,11 @@ pub(crate) fn extract_lights(
         let illuminance = luminance(light.color, light.illuminance);
         // The light from one direction, averaged over the sphere.
         extracted.mean += illuminance / (4.0 * core::f32::consts::PI);
-        if slot < MAX_LIGHTS {
-            extracted.lights[slot] = GpuDirectionalLight {
+        if let Some(slot) = extracted.lights.get_mut(slot) {
+            *slot = GpuDirectionalLight {
                 direction_to_light: transform.back().into(),
                 illuminance,
             };
-            extracted.count += 1;
         }
     }
 }

@@ -34,7 +34,6 @@ pub(crate) struct GpuBody {
     pub(crate) extinction: Vec3,
     pub(crate) refractive_index: f32,
     pub(crate) lights: [GpuDirectionalLight; MAX_LIGHTS],
-    pub(crate) light_count: u32,
     pub(crate) perceptual_roughness: f32,
     pub(crate) radius: f32,
     pub(crate) window_radii: f32,
@@ -55,7 +54,7 @@ pub(crate) struct GpuBody {
 const UNBOUND: f32 = 1e6;
 
 impl GpuBody {
-    /// A body of particles of `radius` (world units); invalid values are replaced by safe ones.
+    /// A body of particles of `radius` (view units); invalid values are replaced by safe ones.
     /// Lights, surroundings and emission are left dark.
     pub(crate) fn new(
         material: &FluidMaterial,
@@ -72,7 +71,11 @@ impl GpuBody {
         };
         let (window, range, bound) = match *smoothing {
             Smoothing::None => (0.0, 1.0, 0.0),
-            Smoothing::PlaneFit(fit) => (window_radii(fit.window), fit.range, fit.bound),
+            Smoothing::PlaneFit(fit) => (
+                window_radii(fit.window),
+                fit.range.clamp(0.5, 4.0),
+                fit.bound,
+            ),
             // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²).
             Smoothing::Bilateral(filter) => (
                 window_radii(filter.window),

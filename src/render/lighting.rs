@@ -32,7 +32,6 @@ impl Lighting<'_> {
     /// Sets everything about light in a body's uniform.
     pub(crate) fn shine_on(&self, body: &mut GpuBody, emission: LinearRgba) -> Cubemaps {
         body.lights = self.lights.lights;
-        body.light_count = self.lights.count;
         body.clear_color = self.clear_color.to_linear().to_vec3();
         body.even_light = self.lights.even(self.surroundings.ambient) * self.exposure;
         body.emission = emission.to_vec3() * self.exposure;

@@ -23,7 +23,7 @@ struct GpuDirectionalLight {
     illuminance: vec3<f32>,
 }
 
-// Appearance of a body in a view.
+// Appearance of a body in a view. Lengths are in view units: metres times the camera's scale.
 struct GpuBody {
     // World to cubemap, handedness included.
     environment_from_world: mat3x3<f32>,
@@ -35,21 +35,20 @@ struct GpuBody {
     extinction: vec3<f32>,
     refractive_index: f32,
     lights: array<GpuDirectionalLight, 4>,
-    light_count: u32,
     perceptual_roughness: f32,
-    // Particle radius in world units.
+    // Particle radius.
     radius: f32,
     // Smoothing: half window in particle radii; 0: in pixels, one per tap.
     window_radii: f32,
-    // Smoothing: depth difference of weight exp(-1), world units.
+    // Smoothing: depth difference of weight exp(-1).
     range: f32,
-    // Smoothing: largest shift in depth, world units.
+    // Smoothing: largest shift in depth.
     bound: f32,
     // Curvature flow: time step, pixels squared.
     flow_step: f32,
     // Search: evenly spaced samples before the bracket.
     coarse_samples: u32,
-    // Search: how far behind the liquid an opaque surface is wetted, world units.
+    // Search: how far behind the liquid an opaque surface is wetted.
     contact: f32,
     // Medium: scattering colour times density, 1/m.
     scattering: vec3<f32>,

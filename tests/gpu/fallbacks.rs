@@ -1,5 +1,5 @@
 //! What happens where there is no device, or it goes away. What a device may lack is decided, and its
-//! absence forced, in `src/render/support.rs` and `tests/layers/equal.rs`: Bevy itself does not start
+//! absence forced, in `src/render/support.rs` and `tests/gpu/layers/equal.rs`: Bevy itself does not start
 //! on devices that lack so much.
 
 use crate::common::*;
@@ -42,6 +42,22 @@ fn show_default() -> App {
     show(&VIEW, ScreenSpaceFluid::default(), scene)
 }
 
+/// Destroys the device, and settles on another.
+pub(crate) fn lose_device(app: &mut App) {
+    app.insert_resource(RenderErrorHandler(|error, _, _| {
+        assert_eq!(error.ty, ErrorType::DeviceLost, "{}", error.description);
+        RenderErrorPolicy::Recover(RenderCreation::default())
+    }));
+    let device = app.world().resource::<RenderDevice>().clone();
+    device.wgpu_device().destroy();
+    // The loss is reported at the next poll; a frame begun before it would write to what is gone.
+    let _ = device.poll(PollType::wait_indefinitely());
+    for _ in 0..8 {
+        app.update();
+    }
+    settle(app).unwrap();
+}
+
 #[test]
 fn without_a_gpu_fluids_are_still_shaped() {
     let settings = WgpuSettings {
@@ -66,18 +82,7 @@ fn without_a_gpu_fluids_are_still_shaped() {
 fn a_lost_device_is_survived() {
     let mut app = show_default();
     let before = capture(&mut app).unwrap();
-    app.insert_resource(RenderErrorHandler(|error, _, _| {
-        assert_eq!(error.ty, ErrorType::DeviceLost, "{}", error.description);
-        RenderErrorPolicy::Recover(RenderCreation::default())
-    }));
-    let device = app.world().resource::<RenderDevice>().clone();
-    device.wgpu_device().destroy();
-    // The loss is reported at the next poll; a frame begun before it would write to what is gone.
-    let _ = device.poll(PollType::wait_indefinitely());
-    for _ in 0..8 {
-        app.update();
-    }
-    settle(&mut app).unwrap();
+    lose_device(&mut app);
     let stage = app.world().resource::<Stage>().image.clone();
     assert!(app.world().resource::<Assets<Image>>().contains(&stage));
     assert_sound(&app);

@@ -370,3 +370,37 @@ fn change_all_materials(app: &mut App, to: FluidMaterial) {
     }
     settle(app).unwrap();
 }
+
+/// A droplet before black whose highlight is all that directional lights do to it.
+#[test]
+fn a_light_that_is_gone_leaves_no_highlight() {
+    let show_lit = |lights: usize| {
+        show(&VIEW, ScreenSpaceFluid::default(), |world| {
+            world.spawn(fluid(&[vec3(0.0, 0.0, -4.0)], 0.8, SPRAY));
+            for i in 0..lights {
+                let from = vec3(i as f32 - 0.5, 1.0, 2.0);
+                world.spawn((
+                    DirectionalLight::default(),
+                    Transform::default().looking_to(-from, Vec3::Y),
+                ));
+            }
+        })
+    };
+    let [none, one] = [0, 1].map(|lights| capture(&mut show_lit(lights)).unwrap());
+    let mut app = show_lit(2);
+    let two = capture(&mut app).unwrap();
+    assert!(two != one && one != none, "highlights show");
+    let lights: Vec<_> = {
+        let world = app.world_mut();
+        let mut lights = world.query_filtered::<Entity, With<DirectionalLight>>();
+        lights.iter(world).collect()
+    };
+    app.world_mut().despawn(lights[1]);
+    settle(&mut app).unwrap();
+    assert!(capture(&mut app).unwrap() == one, "despawned");
+    app.world_mut()
+        .entity_mut(lights[0])
+        .insert(Visibility::Hidden);
+    settle(&mut app).unwrap();
+    assert!(capture(&mut app).unwrap() == none, "hidden");
+}

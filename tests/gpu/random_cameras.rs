@@ -29,27 +29,34 @@ fn lenses() -> impl Strategy<Value = Lens> {
         any::<bool>(),
         any::<bool>(),
     );
-    let any = any.prop_map(|(fov, (a, b, near), x, y, mirrored, oblique)| {
-        let tilted = vec3(a, b, -1.0).normalize().extend(-near);
-        let mut matrix = PerspectiveProjection {
-            fov,
-            aspect_ratio: 1.0,
-            near: 0.1,
-            near_clip_plane: if oblique {
-                tilted
-            } else {
-                vec4(0.0, 0.0, -1.0, -0.1)
-            },
-            ..default()
-        }
-        .get_clip_from_view();
-        if !oblique {
-            matrix.z_axis.x = x;
-            matrix.z_axis.y = y;
-        }
-        let mirror = Mat4::from_scale(vec3(if mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
-        Lens::Matrix(mirror * matrix)
-    });
+    let near_is_ahead = "the near plane lies ahead of the eye in every pixel";
+    let any = any.prop_filter_map(
+        near_is_ahead,
+        |(fov, (a, b, near), x, y, mirrored, oblique)| {
+            let tilted = vec3(a, b, -1.0).normalize().extend(-near);
+            let mut matrix = PerspectiveProjection {
+                fov,
+                aspect_ratio: 1.0,
+                near: 0.1,
+                near_clip_plane: if oblique {
+                    tilted
+                } else {
+                    vec4(0.0, 0.0, -1.0, -0.1)
+                },
+                ..default()
+            }
+            .get_clip_from_view();
+            if !oblique {
+                matrix.z_axis.x = x;
+                matrix.z_axis.y = y;
+            }
+            // Where a wide lens sees past a tilted plane, all is nearer than it and there are no rays.
+            let over_w = matrix.inverse().row(3);
+            let mirror = Mat4::from_scale(vec3(if mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
+            (over_w.z + over_w.w > over_w.x.abs() + over_w.y.abs())
+                .then_some(Lens::Matrix(mirror * matrix))
+        },
+    );
     prop_oneof![2 => plain, 2 => parallel, 3 => any]
 }
 

@@ -32,7 +32,7 @@ use bevy::{
 };
 
 pub use self::view::RainQuads;
-use super::settings::Rain;
+use super::{bake::LostDevices, settings::Rain};
 
 pub(crate) struct RainDrawPlugin;
 
@@ -48,10 +48,12 @@ impl Plugin for RainDrawPlugin {
         if app.get_sub_app(RenderApp).is_some() {
             app.add_plugins(SyncComponentPlugin::<Rain>::default());
         }
+        let lost_devices = app.world().resource::<LostDevices>().clone();
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
         render_app
+            .insert_resource(lost_devices)
             .init_resource::<extract::Shelters>()
             .init_gpu_resource::<SpecializedRenderPipelines<pipeline::RainPipeline>>()
             .add_render_command::<Transparent3d, command::DrawRain>()

@@ -29,6 +29,7 @@ use super::{
     pipeline::{RainKey, RainPart, RainPipeline, RainScene},
     view::{MAX_SHELLS, Plan, RainBindGroup, RainQuads},
 };
+use crate::rain::bake::LostDevices;
 
 /// Resources shared by all views.
 #[derive(Resource)]
@@ -42,14 +43,29 @@ pub(crate) struct RainBuffers {
     near: NearLights,
 }
 
-pub(crate) fn init_rain_buffers(mut commands: Commands) {
-    let items = core::array::from_fn(|_| commands.spawn_empty().id());
-    commands.insert_resource(RainBuffers {
-        uniforms: DynamicUniformBuffer::default(),
-        drop_indices: None,
-        items,
-        near: NearLights::default(),
-    });
+/// Creates what all views share; on another device than before, drops what the lost one held.
+pub(crate) fn init_rain_buffers(
+    known: Option<ResMut<RainBuffers>>,
+    mut views: Query<&mut RainQuads>,
+    lost: Res<LostDevices>,
+    mut commands: Commands,
+) {
+    let Some(mut buffers) = known else {
+        let items = core::array::from_fn(|_| commands.spawn_empty().id());
+        commands.insert_resource(RainBuffers {
+            uniforms: DynamicUniformBuffer::default(),
+            drop_indices: None,
+            items,
+            near: NearLights::default(),
+        });
+        return;
+    };
+    buffers.uniforms = DynamicUniformBuffer::default();
+    buffers.drop_indices = None;
+    for mut quads in &mut views {
+        *quads = RainQuads::default();
+    }
+    lost.add();
 }
 
 /// Items of a view after its shells.

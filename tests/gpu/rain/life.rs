@@ -4,6 +4,7 @@ use bevy::diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore};
 use bevy_fluid::rain::{BAKE_PROGRESS, BAKE_TIME};
 
 use super::*;
+use crate::fallbacks::lose_device;
 
 #[test]
 fn a_game_without_rain_pays_nothing() {
@@ -368,4 +369,29 @@ fn textures_come_without_being_waited_for() {
     assert!(measured(&app, &BAKE_TIME) > Some(0.0));
     settle(&mut app).unwrap();
     assert!(quads(&app).is_some());
+}
+
+/// Entities of the render world: a device that is lost must not leave some behind.
+fn render_entities(app: &App) -> usize {
+    let world = app.sub_app(RenderApp).world();
+    world.iter_entities().count()
+}
+
+#[test]
+fn a_lost_device_is_survived() {
+    for method in [RainMethod::Streaks, RainMethod::PerDrop] {
+        let rain = Rain {
+            method,
+            ..white_rain(20.0, 6.0)
+        };
+        let mut app = show_plain(rain);
+        let before = picture(&mut app);
+        lose_device(&mut app);
+        let entities = render_entities(&app);
+        assert!(picture(&mut app) == before, "{method:?}");
+        assert!(validation_errors(&app).is_empty());
+        lose_device(&mut app);
+        assert!(picture(&mut app) == before, "{method:?}, again");
+        assert_eq!(render_entities(&app), entities, "{method:?}");
+    }
 }
