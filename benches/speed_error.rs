@@ -9,6 +9,8 @@ use std::process::ExitCode;
 use fluid_report::{Options, run_apart};
 
 fn main() -> ExitCode {
+    // Cargo starts benches in their package's folder: paths are meant from the repository's.
+    let _ = std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     match Options::parse_from(std::env::args_os()).and_then(|options| run_apart(&options)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

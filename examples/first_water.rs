@@ -17,7 +17,7 @@ fn main() -> AppExit {
 }
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>, mut images: ResMut<Assets<Image>>) {
-    // A hose: 8000 particles a second, 3 m/s fast, over a ball and onto the floor.
+    // A hose: 8000 particles a second at 3 m/s, over a ball and onto the floor.
     let hose = Transform::from_xyz(-0.8, 0.8, 0.0).looking_to(vec3(1.0, 0.4, 0.0), Vec3::Y);
     commands.spawn((ParticleEmitter::jet(8000.0, 3.0), hose));
     let (air, gray) = (Color::srgb(0.2, 0.45, 0.9), Color::srgb(0.4, 0.4, 0.4));
@@ -39,7 +39,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>, mut images: ResMut<As
     ));
     let sun = Transform::default().looking_to(vec3(-1.0, -2.0, -1.0), Vec3::Y);
     commands.spawn((DirectionalLight::default(), sun));
-    // Water is made of what it mirrors and bends: a sky, a horizon, a ground.
+    // Water shows what it reflects and refracts: a sky, a horizon, a ground.
     let mut sky = EnvironmentMapLight::hemispherical_gradient(&mut images, air, Color::WHITE, gray);
     sky.intensity = 1000.0;
     let eye = Transform::from_xyz(0.3, 0.9, 1.8).looking_at(Vec3::Y * 0.4, Vec3::Y);

@@ -1,4 +1,4 @@
-//! Particle liquids for Bevy, drawn in screen space with up to four refractions; and rain.
+//! Particle liquids for Bevy, drawn in screen space with up to four refractions, and rain.
 //!
 //! A fluid is an entity with [`FluidParticles`] and a [`FluidMaterial`]; a camera with
 //! [`ScreenSpaceFluid`] draws it. Everything else has defaults.
@@ -25,8 +25,8 @@
 //!
 //! 1. [`shape`], on the CPU, in [`FluidSystems::Shape`]: a neighbourhood search on a grid
 //!    classifies each particle: few neighbours make it *spray*, many *bulk*, a full and balanced
-//!    set *interior*, which is not drawn. The covariance of its neighbours stretches the splat of a
-//!    bulk particle along the surface.
+//!    set *interior*, which is not drawn. The splat of a bulk particle is stretched along the
+//!    surface by the covariance of its neighbours.
 //! 2. [`render`], on the GPU, before Bevy's main pass: splats become four depth layers, front and
 //!    back of bulk and of spray; the bulk layers are smoothed; normals come from the plane fit,
 //!    from depth, or from the spray's ellipsoids; the ray of every pixel is traced through up to

@@ -14,6 +14,8 @@ use bevy::math::{UVec2, uvec2};
 use measure::{Case, Pair, View, bake_ms, extinction_ratio};
 
 fn main() -> ExitCode {
+    // Cargo starts benches in their package's folder: paths are meant from the repository's.
+    let _ = std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -2,7 +2,7 @@
 //! floor with coloured pillars behind it: in a window, or with `--out FILE.png` as a picture.
 //!
 //! ```text
-//! cargo run --release --example viewer -- FILE --radius 0.025 --out picture.png
+//! cargo run --release --features recordings --example viewer -- FILE --radius 0.025 --out picture.png
 //! ```
 //! Try `--debug-view normals`, `--smoothing none`, `--refractions 1`, `--isotropic`.
 

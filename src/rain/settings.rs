@@ -9,7 +9,7 @@ use crate::range::SettingRange;
 ///
 /// Values out of range are logged once and clamped.
 ///
-/// Cameras with equal settings that began together show the same drops, until the wind changes.
+/// Cameras with equal settings whose rain began at the same time show the same drops, until the wind changes.
 ///
 /// Rain is lit by the scene's directional lights (the four brightest that share a render layer with
 /// the camera), by point and spot lights (the 32 brightest at the camera), and by the surroundings:

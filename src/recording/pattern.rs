@@ -39,7 +39,7 @@ impl FramePattern {
         );
         let is_sign = |text: &str| text.contains('#') || text.contains("{}");
         if is_sign(folder) {
-            return refuse("the number must stand in the file's name, not the folder's");
+            return refuse("the number must be in the file's name, not the folder's");
         }
         ParticleFormat::of(name)?;
         let (before, digits, after) = if let Some(start) = name.find('#') {

@@ -50,7 +50,7 @@ pub enum SalvaError {
     )]
     Mesh,
     /// A size is not finite and positive.
-    #[error("`SalvaShape` {0:?} (scaled) is none: sizes must be finite and above 0")]
+    #[error("`SalvaShape` {0:?} (scaled) is invalid: sizes must be finite and above 0")]
     Shape(SalvaShape),
     /// A body's shape is hollow or endless.
     #[error("a body cannot be a `SalvaShape::Tank` or a `Plane`")]
@@ -59,7 +59,9 @@ pub enum SalvaError {
     #[error("its transform is not finite")]
     Transform,
     /// A surface needs more particles than can be simulated.
-    #[error("its surface is too large for particles of this radius: liquid sees only its shell")]
+    #[error(
+        "its surface is too large for particles of this radius: liquid collides with its shell only"
+    )]
     Surface,
 }
 

@@ -43,10 +43,10 @@ pub struct SalvaFluid {
     /// ones sink.
     #[reflect(@SettingRange::new(1.0, 1e5).unit("kg/m³").logarithmic())]
     pub density: f32,
-    /// Kinematic viscosity. Unit: m²/s, range 0..=10, default 0.01. That is honey's; water's own
-    /// (1e-6) is far below what particles of some centimetres resolve, and below about 0.005 they
-    /// only jitter. Above 0.32 radius² / step (0.024 for 2.5 cm at the default step, more in
-    /// substeps) it is clamped.
+    /// Kinematic viscosity. Unit: m²/s, range 0..=10, default 0.01, that of honey. Water's (1e-6)
+    /// is far below what particles of some centimetres resolve; below about 0.005 particles only
+    /// jitter. Clamped to 0.32 radius² / step (0.024 for 2.5 cm at the default step; higher with
+    /// substeps).
     #[reflect(@SettingRange::new(0.0, 10.0).unit("m²/s").logarithmic())]
     pub viscosity: f32,
     /// Kinematic viscosity between the fluid and solids, which hold it back or drag it along. Unit:

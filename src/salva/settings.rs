@@ -87,7 +87,7 @@ pub enum SalvaMode {
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
 pub struct SalvaStatus {
-    /// Simulated time over the app's time, smoothed over about ten goes; 1 is real time.
+    /// Simulated time over the app's time, smoothed over about ten batches of steps; 1 is real time.
     pub speed: f32,
     /// Computing time of one step, with its substeps. Unit: s as [`Duration`].
     pub step_time: Duration,

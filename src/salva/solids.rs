@@ -26,13 +26,13 @@ pub enum SalvaShape {
         #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
         size: Vec3,
     },
-    /// A ball around the origin. Of a non-uniform scale, the greatest component applies.
+    /// A ball around the origin. With a non-uniform scale, the largest component applies.
     Sphere {
         /// Unit: m, > 0.
         #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
         radius: f32,
     },
-    /// A capsule along y around the origin. Of a non-uniform scale, the greatest component applies.
+    /// A capsule along y around the origin. With a non-uniform scale, the largest component applies.
     Capsule {
         /// Unit: m, > 0.
         #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]

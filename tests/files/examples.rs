@@ -66,6 +66,12 @@ fn recording() {
 }
 
 #[test]
+fn demo() {
+    let wrong: &[(&[&str], &str)] = &[(&["--frames", "-1"], "-1")];
+    draws("demo", &["--frames", "3"], wrong);
+}
+
+#[test]
 fn dam_break() {
     let wrong: &[(&[&str], &str)] = &[(&["--size", "96"], "96")];
     draws("dam_break", &["--frames", "3"], wrong);

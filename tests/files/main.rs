@@ -1,7 +1,6 @@
 //! What reads and writes files: recordings, the report, and the examples as programs.
 
 mod examples;
-mod fuzz_files;
 mod program;
 mod recording;
 mod speed_error;

@@ -13,7 +13,7 @@ pub(crate) fn example(name: &str) -> Command {
     let program = release.join("examples").join(name);
     assert!(
         program.exists(),
-        "{} is not built: run `cargo test` for all targets, or build the example first",
+        "{} is not built: run `scripts/test`",
         program.display()
     );
     let mut command = Command::new(program);

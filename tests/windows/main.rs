@@ -1,3 +1,3 @@
-//! What lives in a window.
+//! What is seen and done in a window, driven without one.
 
 mod inspector;

@@ -53,7 +53,7 @@ pub enum ColliderShape {
     /// Everything below the xz plane.
     #[default]
     Ground,
-    /// A ball around the origin. Of a non-uniform scale, the greatest component applies.
+    /// A ball around the origin. With a non-uniform scale, the largest component applies.
     Sphere {
         /// Unit: m, range 0..=1e6.
         #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]

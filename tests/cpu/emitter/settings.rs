@@ -1,4 +1,4 @@
-//! Values that make no sense.
+//! Values that are invalid.
 
 use bevy_fluid::{ColliderShape, EmitterBounds, EmitterError};
 

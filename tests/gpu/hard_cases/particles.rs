@@ -1,5 +1,5 @@
 //! h01 to h11: particles that are no good, few, or in degenerate places. Their splats are tested
-//! in `tests/shape.rs`, under the same numbers; here it is what becomes of them on screen.
+//! in `tests/cpu/shape`, under the same numbers; here it is what becomes of them on screen.
 
 use bevy::prelude::*;
 use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};

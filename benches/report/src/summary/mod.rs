@@ -28,8 +28,8 @@ fn text(table: &Table, adapter: &str) -> String {
         "# Speed against error\n\n\
          Rendered by {adapter}, on a machine of {} threads. Times are medians of GPU timestamps in \
          ms, the methods taking turns within one run; on another machine trust their ratios. \
-         Lengths are in particle radii (r), angles in degrees. `speed_error.csv` beside this file \
-         holds every value.\n",
+         Lengths are in particle radii (r), angles in degrees. The bench writes every value to \
+         `speed_error.csv` beside this file; that table is not in the repository.\n",
         std::thread::available_parallelism().map_or(1, usize::from),
     );
     let parts: [Part; 10] = [
