@@ -76,7 +76,8 @@ pub struct ParticleEmitter {
     /// 0..=1000, default 0.05. 0: a point.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic())]
     pub nozzle: f32,
-    /// Random velocity added to each particle, uniform in a ball of this radius. Unit: m/s, range 0..=1000, default 0.1. Higher: the jet breaks up sooner.
+    /// Random velocity added to each particle, uniform in a ball of this radius. Unit: m/s, range
+    /// 0..=1000, default 0.1. Higher: the jet breaks up sooner.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub jitter: f32,
     /// Radius of every particle, in the entity's space: [`FluidParticles::radius`]. Unit: m, range

@@ -9,7 +9,8 @@ use crate::range::SettingRange;
 ///
 /// Values out of range are logged once and clamped.
 ///
-/// Cameras with equal settings whose rain began at the same time show the same drops, until the wind changes.
+/// Cameras with equal settings whose rain began at the same time show the same drops, until the
+/// wind changes.
 ///
 /// Rain is lit by the scene's directional lights (the four brightest that share a render layer with
 /// the camera), by point and spot lights (the 32 brightest at the camera), and by the surroundings:
@@ -24,8 +25,8 @@ pub struct Rain {
     pub rate: f32,
     /// Distance from the camera up to which streaks are drawn; beyond it the background fades.
     /// Unit: m, range 1..=100, default 5 as in the rain paper. Higher: depth and motion in far
-    /// lamplight; the cost grows with the logarithm of the distance beyond 2 m. Straight up or
-    /// down, streaks are points: from 8 m on they fade like rain beyond the distance.
+    /// lamplight; the cost grows with the logarithm of the distance beyond 2 m. Seen along
+    /// their fall, streaks are points: from 8 m on they fade, as beyond `distance`.
     #[reflect(@SettingRange::new(1.0, 100.0).unit("m").logarithmic())]
     pub distance: f32,
     /// Distance up to which it rains: the background fades from [`distance`](Self::distance) to

@@ -56,8 +56,8 @@
 //! # Cost
 //!
 //! On one core of a shared server a step takes 6 µs per particle (2000 particles: 11.6 ms; 6750:
-//! 41 ms), and 10 µs beyond the cache (16,000: 159 ms; 54,000: 521 ms), in the first half second of a dam
-//! break in a tank twice as wide, boundary particles near liquid included (measured by
+//! 41 ms), and 10 µs beyond the cache (16,000: 159 ms; 54,000: 521 ms), in the first half second
+//! of a dam break in a tank twice as wide, boundary particles near liquid included (measured by
 //! `scripts/test --test cpu -- --ignored --nocapture cost`). A desktop with many cores simulates
 //! some 10,000 particles live.
 //!
