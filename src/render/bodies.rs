@@ -25,7 +25,7 @@ use super::{
     grouping::{Group, Member, groups},
     layers::Layers,
     lighting::{Cubemaps, Lighting},
-    pipelines::{BodyPipelines, Pipelines},
+    pipelines::{BodyPipelines, Pipelines, Variant},
     plan::{Plan, PlanInput, plan},
     scene_depth::SCENE_DEPTH_FORMAT,
     scene_textures::{Placeholders, view_texture},
@@ -264,16 +264,6 @@ pub(crate) fn prepare_bodies(
             let (Some(plan), Some(scissor)) = (plan(&input), scissor) else {
                 continue;
             };
-            let steps = SmoothSteps::new(&plan.smoothing);
-            // A scaled camera's metres differ from the world's.
-            let view_scale = mean_scale(&view_from_eye.matrix3);
-            let mut body = GpuBody::new(material, radius * view_scale, settings, &plan.smoothing);
-            let cubemaps = lighting.shine_on(&mut body, material.medium.emission);
-            body.scale_lengths(view_scale);
-            if let Some(center) = behind.replace(bounds.center()) {
-                let center = view_from_eye.transform_point3(center);
-                body.behind = center.extend(1.0);
-            }
             let composite = CompositeKey {
                 debug_view: debug_view.copied(),
                 format: view.target_format,
@@ -286,7 +276,23 @@ pub(crate) fn prepare_bodies(
                 several,
                 accumulated: plan.accumulated && debug_view == Some(&FluidDebugView::Thickness),
             };
-            let pipelines = pipelines.of(&plan, &steps, settings, &support, composite);
+            let wanted = Variant {
+                plan,
+                settings: *settings,
+                composite,
+            };
+            let (Variant { plan, settings, .. }, pipelines) =
+                pipelines.choose(entity, members, wanted, &support);
+            let steps = SmoothSteps::new(&plan.smoothing);
+            // A scaled camera's metres differ from the world's.
+            let view_scale = mean_scale(&view_from_eye.matrix3);
+            let mut body = GpuBody::new(material, radius * view_scale, &settings, &plan.smoothing);
+            let cubemaps = lighting.shine_on(&mut body, material.medium.emission);
+            body.scale_lengths(view_scale);
+            if let Some(center) = behind.replace(bounds.center()) {
+                let center = view_from_eye.transform_point3(center);
+                body.behind = center.extend(1.0);
+            }
             let layers = Layers::new(
                 &mut textures,
                 &device,
@@ -336,6 +342,7 @@ pub(crate) fn prepare_bodies(
         });
     }
     reporter.end(report);
+    pipelines.end_frame();
     uniforms.bodies.write_buffer(&device, &queue);
     uniforms.depth_ranges.write_buffer(&device, &queue);
 }

@@ -2,12 +2,14 @@
 
 use bevy::{
     ecs::system::SystemParam,
+    platform::collections::HashMap,
     prelude::*,
     render::render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
 };
 
 use super::{
     composite::{CompositeKey, CompositePart, CompositePipeline},
+    grouping::Member,
     normals::{BulkNormals, NormalSource, NormalsPipeline},
     plan::Plan,
     refract::{RefractKey, RefractPipeline},
@@ -55,9 +57,20 @@ impl BodyPipelines {
     }
 }
 
+/// All that decides which pipelines a body needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Variant {
+    pub(crate) plan: Plan,
+    pub(crate) settings: ScreenSpaceFluid,
+    pub(crate) composite: CompositeKey,
+}
+
 /// The pipelines of all passes, by key.
 #[derive(SystemParam)]
-pub(crate) struct Pipelines<'w> {
+pub(crate) struct Pipelines<'w, 's> {
+    /// The variant that each fluid of each view was last drawn in, by view and fluid, and whether
+    /// this frame has drawn it.
+    last_drawn: Local<'s, HashMap<(Entity, Entity), (Variant, bool)>>,
     cache: Res<'w, PipelineCache>,
     splat: Res<'w, SplatPipeline>,
     splats: ResMut<'w, SpecializedRenderPipelines<SplatPipeline>>,
@@ -73,7 +86,38 @@ pub(crate) struct Pipelines<'w> {
     composites: ResMut<'w, SpecializedRenderPipelines<CompositePipeline>>,
 }
 
-impl Pipelines<'_> {
+impl Pipelines<'_, '_> {
+    /// The variant to draw a body in, and its pipelines: the last one while those of the wanted one
+    /// are being compiled, so that the liquid does not vanish meanwhile.
+    pub(crate) fn choose(
+        &mut self,
+        view: Entity,
+        members: &[Member],
+        wanted: Variant,
+        support: &FluidSupport,
+    ) -> (Variant, BodyPipelines) {
+        let mut chosen = (wanted, self.of(&wanted, support));
+        if !chosen.1.ready(&self.cache) {
+            let known = |member: &Member| self.last_drawn.get(&(view, member.entity));
+            let last = members.iter().find_map(known).map(|(variant, _)| *variant);
+            match last.filter(|last| last.composite.fits(&wanted.composite)) {
+                Some(last) => chosen = (last, self.of(&last, support)),
+                None => return chosen,
+            }
+        }
+        for member in members {
+            self.last_drawn
+                .insert((view, member.entity), (chosen.0, true));
+        }
+        chosen
+    }
+
+    /// Forgets what this frame has not drawn.
+    pub(crate) fn end_frame(&mut self) {
+        self.last_drawn
+            .retain(|_, (_, drawn)| core::mem::take(drawn));
+    }
+
     /// Requests both forms at once, so that neither has to be waited for when the near plane enters
     /// a body.
     fn splat(&mut self, output: SplatOutput, cut: bool) -> CachedRenderPipelineId {
@@ -94,15 +138,14 @@ impl Pipelines<'_> {
             .specialize(&self.cache, &self.composite, key)
     }
 
-    /// All pipelines that a body's plan requires.
-    pub(crate) fn of(
-        &mut self,
-        plan: &Plan,
-        steps: &SmoothSteps,
-        settings: &ScreenSpaceFluid,
-        support: &FluidSupport,
-        composite: CompositeKey,
-    ) -> BodyPipelines {
+    /// All pipelines that a variant of a body requires.
+    fn of(&mut self, variant: &Variant, support: &FluidSupport) -> BodyPipelines {
+        let Variant {
+            plan,
+            settings,
+            composite,
+        } = *variant;
+        let steps = SmoothSteps::new(&plan.smoothing);
         let splat = if support.max_blend {
             let output = if plan.backs() {
                 SplatOutput::Layers
@@ -130,7 +173,7 @@ impl Pipelines<'_> {
             },
             _ => BulkNormals::Depth(self.normals(NormalSource::Depth)),
         };
-        let refract = RefractKey::new(plan, settings);
+        let refract = RefractKey::new(&plan, &settings);
         let thickness = plan.accumulated.then(|| {
             let format = support.thickness_format;
             self.thicknesses

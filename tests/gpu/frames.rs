@@ -404,3 +404,59 @@ fn a_light_that_is_gone_leaves_no_highlight() {
     settle(&mut app).unwrap();
     assert!(capture(&mut app).unwrap() == none, "hidden");
 }
+
+/// A change that needs other pipelines must not make the liquid vanish until they are compiled.
+#[test]
+fn no_frame_is_without_liquid() {
+    const SKY: Color = Color::srgb(1.0, 0.0, 1.0);
+    let mut app = show(&VIEW, ScreenSpaceFluid::default(), |world| {
+        world.insert_resource(ClearColor(SKY));
+        world.spawn(pool()).insert(FluidMaterial::INK);
+    });
+    let camera = only::<Camera3d>(&mut app);
+    app.world_mut()
+        .get_mut::<Camera>(camera)
+        .unwrap()
+        .clear_color = ClearColorConfig::Default;
+    let liquid = only::<FluidParticles>(&mut app);
+    settle(&mut app).unwrap();
+    let covered = |app: &mut App| {
+        let picture = capture(app).unwrap();
+        let is_sky = |pixel: &&image::Rgba<u8>| pixel.0 == [255, 0, 255, 255];
+        picture.pixels().count() - picture.pixels().filter(is_sky).count()
+    };
+    let before = covered(&mut app);
+    assert!(before > 500, "{before}");
+    let changes: [(&str, fn(&mut World, [Entity; 2])); 6] = [
+        ("no droplet", |world, [_, liquid]| {
+            let mut fluid = world.get_mut::<FluidParticles>(liquid).unwrap();
+            fluid.positions.pop();
+        }),
+        ("another medium", |world, [_, liquid]| {
+            world.entity_mut(liquid).insert(FluidMaterial::MILK);
+        }),
+        ("smoke", |world, [_, liquid]| {
+            world.entity_mut(liquid).insert(FluidMaterial::SMOKE);
+        }),
+        ("other smoothing", |world, [camera, liquid]| {
+            world.entity_mut(liquid).insert(FluidMaterial::INK);
+            world.entity_mut(camera).insert(ScreenSpaceFluid::THESIS);
+        }),
+        ("fewer refractions", |world, [camera, _]| {
+            world.entity_mut(camera).insert(ScreenSpaceFluid::FAST);
+        }),
+        ("another fluid", |world, _| {
+            let droplet = fluid(&[vec3(-0.5, 0.7, -4.0)], RADIUS, SPRAY);
+            world.spawn(droplet).insert(FluidMaterial::HONEY);
+        }),
+    ];
+    for (name, change) in changes {
+        change(app.world_mut(), [camera, liquid]);
+        for frame in 0..4 {
+            step(&mut app, 1);
+            let now = covered(&mut app);
+            assert!(2 * now > before, "{name}, frame {frame}: {now} of {before}");
+        }
+        assert_sound(&app);
+    }
+}

@@ -39,6 +39,15 @@ pub(crate) struct CompositeKey {
     pub(crate) accumulated: bool,
 }
 
+impl CompositeKey {
+    /// Whether a pipeline of this key can draw where `other` is wanted: to the same target, with the
+    /// same bind groups.
+    pub(crate) fn fits(&self, other: &Self) -> bool {
+        (self.debug_view, self.format, self.samples)
+            == (other.debug_view, other.format, other.samples)
+    }
+}
+
 /// What is written. If bodies wrote their depth at once, a body painted later would be cut off
 /// where it is behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
