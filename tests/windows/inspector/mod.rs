@@ -225,7 +225,7 @@ fn in_sight(app: &mut App, role: &str, name: &str) -> egui::Rect {
                 Event::PointerMoved(middle),
                 Event::MouseWheel {
                     unit: egui::MouseWheelUnit::Point,
-                    delta: egui::vec2(0.0, (middle.y - rect.center().y).clamp(-90.0, 90.0)),
+                    delta: egui::vec2(0.0, (middle.y - rect.center().y).clamp(-360.0, 360.0)),
                     phase: egui::TouchPhase::Move,
                     modifiers: default(),
                 },
