@@ -4,8 +4,8 @@ use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{
-    settings::{DEFAULT_EXPOSURE, Exposure, Rain, RainShelter, RainStreaks},
-    streaks::{LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
+    settings::{Exposure, Rain, RainShelter, RainStreaks},
+    streaks::{DEFAULT_EXPOSURE, LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
 };
 use crate::{
     complaints::{AboutField, Complaints},
@@ -108,15 +108,6 @@ impl Rain {
     }
 }
 
-fn limited_exposure(seconds: &mut f32) -> Limited<'_> {
-    Limited::new(
-        "exposure",
-        seconds,
-        [SHORTEST_EXPOSURE, LONGEST_EXPOSURE],
-        DEFAULT_EXPOSURE,
-    )
-}
-
 impl RainStreaks {
     /// Checks the exposure time against its documented range.
     ///
@@ -126,7 +117,9 @@ impl RainStreaks {
         match self.exposure {
             Exposure::FrameTime => Ok(()),
             Exposure::Seconds(mut seconds) => {
-                RainError::check("RainStreaks", &limited_exposure(&mut seconds))
+                let exposures = [SHORTEST_EXPOSURE, LONGEST_EXPOSURE];
+                let limited = Limited::new("exposure", &mut seconds, exposures, DEFAULT_EXPOSURE);
+                RainError::check("RainStreaks", &limited)
             }
         }
     }
@@ -147,12 +140,6 @@ impl RainShelter {
             scale: transform.scale(),
         })
     }
-}
-
-/// The valid exposure time nearest to `seconds`.
-pub(crate) fn clamped_exposure(mut seconds: f32) -> f32 {
-    limited_exposure(&mut seconds).clamp();
-    seconds
 }
 
 pub(crate) fn check_rain(
@@ -197,6 +184,7 @@ pub(crate) fn check_shelters(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rain::streaks::clamped_exposure;
 
     #[test]
     fn presets_make_sense() {

@@ -5,8 +5,6 @@ use bevy::{
     prelude::*,
 };
 
-use super::{bake::BakedStreaks, settings::Rain};
-
 /// When a camera moves this far up or down, the height about which columns lean changes. Unit: m.
 const REACH: f64 = 32.0;
 
@@ -56,20 +54,6 @@ impl RainClock {
         // At the camera's height, columns stay where they are.
         self.anchor += (lean - self.lean).as_dvec2() * (camera_height - self.height);
         self.lean = lean;
-    }
-}
-
-pub(crate) fn advance_clocks(
-    mut cameras: Query<(&Rain, &GlobalTransform, &mut RainClock)>,
-    streaks: Res<BakedStreaks>,
-    time: Res<Time>,
-) {
-    let Some(ready) = streaks.ready() else {
-        return;
-    };
-    for (rain, transform, mut clock) in &mut cameras {
-        let (wind, height) = (rain.clamped().wind, transform.translation().y);
-        clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }
 

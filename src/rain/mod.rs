@@ -86,11 +86,25 @@ impl Plugin for RainPlugin {
                     check::check_rain,
                     check::check_shelters,
                     bake::bake_streaks,
-                    clock::advance_clocks,
+                    advance_clocks,
                 )
                     .chain()
                     .after(TransformSystems::Propagate),
             )
             .add_plugins(draw::RainDrawPlugin);
+    }
+}
+
+fn advance_clocks(
+    mut cameras: Query<(&Rain, &GlobalTransform, &mut RainClock)>,
+    streaks: Res<BakedStreaks>,
+    time: Res<Time>,
+) {
+    let Some(ready) = streaks.ready() else {
+        return;
+    };
+    for (rain, transform, mut clock) in &mut cameras {
+        let (wind, height) = (rain.clamped().wind, transform.translation().y);
+        clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }

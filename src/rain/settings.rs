@@ -2,7 +2,11 @@
 
 use bevy::{camera::Hdr, prelude::*};
 
-use super::{check::clamped_exposure, clock::RainClock, drops::DragLaw};
+use super::{
+    clock::RainClock,
+    drops::DragLaw,
+    streaks::{DEFAULT_EXPOSURE, clamped_exposure},
+};
 use crate::range::SettingRange;
 
 /// Makes a camera draw rain.
@@ -112,9 +116,6 @@ pub enum Exposure {
         #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().start(1.0 / 60.0))] f32,
     ),
 }
-
-/// Exposure before the frame time is known. Unit: s.
-pub(crate) const DEFAULT_EXPOSURE: f32 = 1.0 / 60.0;
 
 /// Longest exposure that follows the frame time. Unit: s.
 pub(crate) const LONGEST_FRAME: f32 = 1.0 / 30.0;

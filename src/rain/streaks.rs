@@ -20,7 +20,6 @@ use rayon::prelude::*;
 
 use super::{
     births::diameter_of_birth,
-    check::clamped_exposure,
     densities::{BAKED_RATES, DENSITIES},
     drops::{DragLaw, LARGEST, SMALLEST, count},
 };
@@ -37,6 +36,8 @@ pub const HEIGHT: usize = 512;
 pub const LONGEST_EXPOSURE: f32 = 0.1;
 /// Shortest exposure. Unit: s.
 pub const SHORTEST_EXPOSURE: f32 = 1e-4;
+/// Exposure before the frame time is known. Unit: s.
+pub(crate) const DEFAULT_EXPOSURE: f32 = 1.0 / 60.0;
 
 /// Everything that the appearance of streaks depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +97,15 @@ impl Streak {
         // A texel beside the border is blended with the one across it.
         let reach = self.radius + 1.0 / WIDTH as f64;
         self.y + self.length > 1.0 || self.x < reach || self.x > 1.0 - reach
+    }
+}
+
+/// The valid exposure time nearest to `seconds`.
+pub(crate) fn clamped_exposure(seconds: f32) -> f32 {
+    if seconds.is_nan() {
+        DEFAULT_EXPOSURE
+    } else {
+        seconds.clamp(SHORTEST_EXPOSURE, LONGEST_EXPOSURE)
     }
 }
 

@@ -1,16 +1,12 @@
-//! The particles of one moment, and the files that hold them.
-
-use std::{fs, io, path::Path};
+//! The particles of one moment.
 
 use bevy::prelude::*;
 use thiserror::Error;
 
-use super::format::ParticleFormat;
-
 /// The particles of one moment, as a file holds them.
 ///
 /// An asset: `asset_server.load::<ParticleFrame>("dam.vtk")` reads one file of any
-/// [`ParticleFormat`] by its extension.
+/// [`ParticleFormat`](super::ParticleFormat) by its extension.
 #[derive(Asset, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct ParticleFrame {
@@ -67,61 +63,8 @@ pub enum FrameError {
 }
 
 impl ParticleFrame {
-    /// Parses the content of the file `name`, whose extension sets the format. Memory and time are
-    /// bounded by the actual bytes, whatever the header claims (a zipped `.bgeo` may unzip to 1
-    /// GiB).
-    ///
-    /// # Errors
-    /// [`FrameError::Format`], [`FrameError::Empty`] and [`FrameError::Damaged`].
-    pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, FrameError> {
-        let format = ParticleFormat::of(name)?;
-        if bytes.is_empty() && format != ParticleFormat::Xyz {
-            return Err(FrameError::Empty { name: name.into() });
-        }
-        format
-            .read(bytes)
-            .and_then(Self::checked)
-            .map_err(|reason| FrameError::Damaged {
-                name: name.into(),
-                reason: reason.lines().next().unwrap_or_default().into(),
-            })
-    }
-
-    /// Reads a file from the file system.
-    ///
-    /// # Errors
-    /// [`FrameError::Read`] and those of [`parse`](Self::parse).
-    pub fn read(path: &Path) -> Result<Self, FrameError> {
-        let name = path.display().to_string();
-        let bytes = fs::read(path).map_err(|error| FrameError::Read {
-            name: name.clone(),
-            reason: error.to_string(),
-        })?;
-        Self::parse(&name, &bytes)
-    }
-
-    /// Writes a file to the file system, in the format of its extension. The file is written
-    /// completely or not at all.
-    ///
-    /// # Errors
-    /// [`FrameError::Format`] and [`FrameError::Write`]; no partial file is left.
-    pub fn write(&self, path: &Path) -> Result<(), FrameError> {
-        self.write_with(path, &mut Vec::new())
-    }
-
-    /// The same with a buffer that can be used again.
-    pub(super) fn write_with(&self, path: &Path, bytes: &mut Vec<u8>) -> Result<(), FrameError> {
-        let name = path.display().to_string();
-        let format = ParticleFormat::of(&name)?;
-        bytes.clear();
-        self.check()
-            .and_then(|()| format.write(self, bytes))
-            .and_then(|()| replace(path, bytes).map_err(|error| error.to_string()))
-            .map_err(|reason| FrameError::Write { name, reason })
-    }
-
     /// What a reader has found, if every attribute is there for every particle.
-    fn checked(self) -> Result<Self, String> {
+    pub(super) fn checked(self) -> Result<Self, String> {
         self.check()?;
         Ok(Self {
             radius: self.radius.filter(|&radius| is_radius(radius)),
@@ -129,7 +72,7 @@ impl ParticleFrame {
         })
     }
 
-    fn check(&self) -> Result<(), String> {
+    pub(super) fn check(&self) -> Result<(), String> {
         let count = self.positions.len();
         for (what, there) in [
             ("ids", self.ids.len()),
@@ -146,16 +89,4 @@ impl ParticleFrame {
 /// Whether particles can have this radius.
 pub(super) fn is_radius(radius: f32) -> bool {
     radius > 0.0 && radius.is_finite()
-}
-
-/// Puts a file in its place once all of it is written, so that no partial file is read.
-pub(super) fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let name = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
-    // Hidden, so that no listing of frames holds it.
-    let temporary = path.with_file_name(format!(".{}.tmp", name.to_string_lossy()));
-    fs::write(&temporary, bytes)
-        .and_then(|()| fs::rename(&temporary, path))
-        .inspect_err(|_| {
-            let _ = fs::remove_file(&temporary);
-        })
 }

@@ -37,6 +37,7 @@ mod error;
 mod files;
 mod format;
 mod frame;
+mod frame_file;
 mod interpolate;
 mod loader;
 mod pattern;

@@ -1,11 +1,13 @@
-//! The neighbourhood search: particles that may be neighbours of a few particles of one cell.
+//! The neighbourhood search: every particle is compared with the candidates around its cell.
 
 use std::ops::Range;
 
 use bevy::math::Vec3;
+use rayon::prelude::*;
 use wide::f32x8;
 
 use super::{
+    CHUNK,
     grid::{Grid, Group},
     neighborhood::Neighborhood,
 };
@@ -20,6 +22,23 @@ pub(super) const MAX_CANDIDATES: usize = 2048;
 const NOWHERE: f32 = f32::MAX;
 
 type Axis = [f32; MAX_CANDIDATES + LANES];
+
+/// Measures the neighbourhood of every sorted particle within `reach` (m).
+pub(super) fn measure(grid: &Grid, reach: f32, out: &mut Vec<Neighborhood>) {
+    out.resize(grid.len(), Neighborhood::default());
+    out.par_chunks_mut(CHUNK)
+        .enumerate()
+        .for_each(|(chunk, out)| {
+            let first = chunk * CHUNK;
+            let mut candidates = Candidates::new(reach);
+            for group in grid.groups(first..first + out.len()) {
+                candidates.gather(grid, &group, None);
+                for sorted in group.particles {
+                    out[sorted - first] = candidates.neighborhood(grid.position(sorted));
+                }
+            }
+        });
+}
 
 /// Particles that may be within reach of a group of particles, copied together so that
 /// the loops over them run in lanes.

@@ -133,7 +133,7 @@ impl ShapeWorkspace {
         self.grid.build(positions, reach);
         out.times.grid = start.elapsed();
 
-        neighborhood::measure(&self.grid, reach, &mut self.neighborhoods);
+        candidates::measure(&self.grid, reach, &mut self.neighborhoods);
         self.classes
             .classify(&self.grid, &self.neighborhoods, kernel, radius);
         out.times.classify = start.elapsed() - out.times.grid;

@@ -1,8 +1,4 @@
-//! The neighbour pass: count, mean and covariance of every particle's neighbourhood.
-
-use rayon::prelude::*;
-
-use super::{CHUNK, candidates::Candidates, grid::Grid};
+//! A particle's neighbourhood: count, mean and covariance.
 
 /// Weighted neighbourhood of one particle, itself included, with w = 1 − (d/R)³
 /// (Yu & Turk 2013, equations 9 to 11). Lengths in R.
@@ -32,21 +28,4 @@ impl Neighborhood {
         let rest = 2.0 * [xy, xz, yz].map(squared).iter().sum::<f32>();
         (diagonal + rest) / squared(self.trace()).max(f32::MIN_POSITIVE)
     }
-}
-
-/// Measures the neighbourhood of every sorted particle within `reach` (m).
-pub(super) fn measure(grid: &Grid, reach: f32, out: &mut Vec<Neighborhood>) {
-    out.resize(grid.len(), Neighborhood::default());
-    out.par_chunks_mut(CHUNK)
-        .enumerate()
-        .for_each(|(chunk, out)| {
-            let first = chunk * CHUNK;
-            let mut candidates = Candidates::new(reach);
-            for group in grid.groups(first..first + out.len()) {
-                candidates.gather(grid, &group, None);
-                for sorted in group.particles {
-                    out[sorted - first] = candidates.neighborhood(grid.position(sorted));
-                }
-            }
-        });
 }

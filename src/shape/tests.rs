@@ -5,10 +5,10 @@ use wide::f32x8;
 
 use super::{
     FluidSplats, ShapeWorkspace, SurfaceKernel,
-    candidates::MAX_CANDIDATES,
+    candidates::{self, MAX_CANDIDATES},
     eigen::eigen,
     grid::Grid,
-    neighborhood::{self, Neighborhood},
+    neighborhood::Neighborhood,
     oracle::{self, Random, lattice},
 };
 
@@ -16,7 +16,7 @@ fn measure(positions: &[Vec3], reach: f32) -> (Grid, Vec<Neighborhood>) {
     let mut grid = Grid::default();
     let mut out = Vec::new();
     grid.build(positions, reach);
-    neighborhood::measure(&grid, reach, &mut out);
+    candidates::measure(&grid, reach, &mut out);
     (grid, out)
 }
 

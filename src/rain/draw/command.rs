@@ -23,8 +23,8 @@ use bevy::{
 };
 
 use super::{
-    prepare::{BACKDROP, DROPS, RainBuffers},
-    view::RainQuads,
+    buffers::RainBuffers,
+    quads::{BACKDROP, DROPS, RainQuads},
 };
 
 /// Copies the scene's depth, including liquids, before transparent objects are drawn.

@@ -6,7 +6,7 @@ use bevy::{
     render::{Extract, sync_component::SyncComponent, sync_world::RenderEntity},
 };
 
-use super::view::RainQuads;
+use super::quads::RainQuads;
 use crate::rain::{
     bake::{BakedStreaks, ReadyStreaks},
     clock::RainClock,

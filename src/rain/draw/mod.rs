@@ -1,5 +1,6 @@
 //! From voxels to picture: a few items in Bevy's transparent phase for each view with rain.
 
+mod buffers;
 mod command;
 mod extract;
 mod gpu_types;
@@ -7,6 +8,7 @@ mod lattice;
 mod lights;
 mod pipeline;
 mod prepare;
+mod quads;
 #[cfg(test)]
 mod tests;
 mod view;
@@ -31,7 +33,7 @@ use bevy::{
     shader::load_shader_library,
 };
 
-pub use self::view::RainQuads;
+pub use self::quads::RainQuads;
 use super::{bake::LostDevices, settings::Rain};
 
 pub(crate) struct RainDrawPlugin;
@@ -59,7 +61,7 @@ impl Plugin for RainDrawPlugin {
             .add_render_command::<Transparent3d, command::DrawRain>()
             .add_systems(
                 RenderStartup,
-                (pipeline::init_rain_pipeline, prepare::init_rain_buffers),
+                (pipeline::init_rain_pipeline, buffers::init_rain_buffers),
             )
             .add_systems(
                 ExtractSchedule,

@@ -10,9 +10,8 @@ use bevy::{
         render_asset::RenderAssets,
         render_phase::{DrawFunctions, PhaseItemExtraIndex, ViewSortedRenderPhases},
         render_resource::{
-            BindGroupEntries, Buffer, BufferInitDescriptor, BufferUsages, DynamicUniformBuffer,
-            Extent3d, PipelineCache, SpecializedRenderPipelines, TextureDescriptor,
-            TextureDimension, TextureUsages,
+            BindGroupEntries, Buffer, BufferInitDescriptor, BufferUsages, Extent3d, PipelineCache,
+            SpecializedRenderPipelines, TextureDescriptor, TextureDimension, TextureUsages,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::{FallbackImage, GpuImage, TextureCache},
@@ -21,56 +20,17 @@ use bevy::{
 };
 
 use super::{
+    buffers::RainBuffers,
     command::DrawRain,
     extract::{EnvironmentMap, ExtractedRain, Shelters},
     gpu_types::{GpuQuad, GpuRain},
     lattice::{ALL_CELLS, Content, Eye, NEAR_CELLS, add_voxels, fall_axis},
-    lights::{NearLights, suns},
+    lights::suns,
     pipeline::{RainKey, RainPart, RainPipeline, RainScene},
-    view::{MAX_SHELLS, Plan, RainBindGroup, RainQuads},
+    quads::{BACKDROP, DROPS, RainBindGroup, RainQuads},
+    view::Plan,
 };
-use crate::rain::bake::LostDevices;
 
-/// Resources shared by all views.
-#[derive(Resource)]
-pub(crate) struct RainBuffers {
-    pub(crate) uniforms: DynamicUniformBuffer<GpuRain>,
-    /// Two triangles for every four vertices.
-    pub(crate) drop_indices: Option<Buffer>,
-    /// Phases distinguish their items by entity; these represent a view's shells, its backdrop and
-    /// its drops.
-    pub(crate) items: [Entity; MAX_SHELLS + 2],
-    near: NearLights,
-}
-
-/// Creates what all views share; on another device than before, drops what the lost one held.
-pub(crate) fn init_rain_buffers(
-    known: Option<ResMut<RainBuffers>>,
-    mut views: Query<&mut RainQuads>,
-    lost: Res<LostDevices>,
-    mut commands: Commands,
-) {
-    let Some(mut buffers) = known else {
-        let items = core::array::from_fn(|_| commands.spawn_empty().id());
-        commands.insert_resource(RainBuffers {
-            uniforms: DynamicUniformBuffer::default(),
-            drop_indices: None,
-            items,
-            near: NearLights::default(),
-        });
-        return;
-    };
-    buffers.uniforms = DynamicUniformBuffer::default();
-    buffers.drop_indices = None;
-    for mut quads in &mut views {
-        *quads = RainQuads::default();
-    }
-    lost.add();
-}
-
-/// Items of a view after its shells.
-pub(crate) const BACKDROP: usize = MAX_SHELLS;
-pub(crate) const DROPS: usize = MAX_SHELLS + 1;
 /// Enough for 200 mm/h, the highest rate.
 const MAX_DROPS: u32 = 6000;
 

@@ -10,7 +10,7 @@ use std::path::Path;
 use bevy::prelude::*;
 
 use super::{
-    frame::{FrameError, ParticleFrame},
+    frame::{FrameError, ParticleFrame, is_radius},
     quietly::quietly,
 };
 
@@ -93,7 +93,7 @@ fn ids(numbers: impl Iterator<Item = f64>) -> Vec<u32> {
 /// The mean of the valid radii.
 fn mean_radius(radii: impl Iterator<Item = f32>) -> Option<f32> {
     let (sum, count) = radii
-        .filter(|&radius| super::frame::is_radius(radius))
+        .filter(|&radius| is_radius(radius))
         .fold((0.0, 0), |(sum, count), radius| {
             (sum + f64::from(radius), count + 1)
         });

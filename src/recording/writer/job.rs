@@ -11,7 +11,8 @@ use super::RecordingWriter;
 use crate::recording::{
     asset::RecordingSettings,
     error::RecordingError,
-    frame::{FrameError, ParticleFrame, replace},
+    frame::{FrameError, ParticleFrame},
+    frame_file::replace,
     pattern::FramePattern,
 };
 
