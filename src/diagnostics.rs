@@ -41,7 +41,7 @@ use bevy::{
 };
 
 #[cfg(feature = "recordings")]
-use crate::recording::LoadedFrames;
+use crate::source::recording::LoadedFrames;
 use crate::{EmittedParticles, FluidSystems, ShapedFluid, shape::ShapeTimes};
 
 /// Particles of all fluids, dropped ones included.
@@ -147,7 +147,10 @@ fn measure_recordings(players: Query<&LoadedFrames>, mut diagnostics: Diagnostic
 }
 
 #[cfg(feature = "salva")]
-fn measure_salva(status: Option<Res<crate::salva::SalvaStatus>>, mut diagnostics: Diagnostics) {
+fn measure_salva(
+    status: Option<Res<crate::source::salva::SalvaStatus>>,
+    mut diagnostics: Diagnostics,
+) {
     let Some(status) = status else {
         return;
     };

@@ -88,38 +88,32 @@
 
 mod complaints;
 pub mod diagnostics;
-mod emitter;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 mod limits;
 mod material;
 mod medium;
-mod particles;
 pub mod rain;
 mod random;
 mod range;
-#[cfg(feature = "recordings")]
-pub mod recording;
 pub mod render;
-#[cfg(feature = "salva")]
-pub mod salva;
 mod schedule;
 mod settings;
 pub mod shape;
+mod source;
 
 use bevy::prelude::*;
 
 #[cfg(feature = "inspector")]
 pub use crate::inspector::FluidInspectorPlugin;
+#[cfg(feature = "recordings")]
+pub use crate::source::recording;
+#[cfg(feature = "salva")]
+pub use crate::source::salva;
 pub use crate::{
     diagnostics::FluidDiagnosticsPlugin,
-    emitter::{
-        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
-        ParticleCollider, ParticleEmitter,
-    },
     material::{FluidMaterial, MaterialError, Thickness},
     medium::{Medium, MediumError},
-    particles::{FluidParticles, ShapedFluid},
     rain::{Rain, RainPlugin},
     range::SettingRange,
     render::LayerBlending,
@@ -129,12 +123,17 @@ pub use crate::{
         PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, Window,
     },
     shape::SurfaceKernel,
+    source::emitter::{
+        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
+        ParticleCollider, ParticleEmitter,
+    },
+    source::particles::{FluidParticles, ShapedFluid},
 };
 
 /// Types that most programs need.
 pub mod prelude {
     #[cfg(feature = "salva")]
-    pub use crate::salva::{
+    pub use crate::source::salva::{
         SalvaBody, SalvaBoundary, SalvaFluid, SalvaMode, SalvaPlugin, SalvaSettings, SalvaShape,
         SalvaStatus,
     };
@@ -168,8 +167,8 @@ impl Plugin for FluidPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins((
             schedule::plugin,
-            particles::plugin,
-            emitter::plugin,
+            source::particles::plugin,
+            source::emitter::plugin,
             material::plugin,
             render::FluidRenderPlugin {
                 layer_blending: self.layer_blending,

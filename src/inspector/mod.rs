@@ -138,14 +138,14 @@ impl Plugin for FluidInspectorPlugin {
             .show::<RainStreaks>();
         #[cfg(feature = "recordings")]
         inspector
-            .show::<crate::recording::RecordingPlayer>()
-            .show::<crate::recording::RecordingWriter>();
+            .show::<crate::source::recording::RecordingPlayer>()
+            .show::<crate::source::recording::RecordingWriter>();
         #[cfg(feature = "salva")]
         inspector
-            .show::<crate::salva::SalvaFluid>()
-            .show::<crate::salva::SalvaBoundary>()
-            .show::<crate::salva::SalvaBody>()
-            .show::<crate::salva::SalvaSettings>();
+            .show::<crate::source::salva::SalvaFluid>()
+            .show::<crate::source::salva::SalvaBoundary>()
+            .show::<crate::source::salva::SalvaBody>()
+            .show::<crate::source::salva::SalvaSettings>();
         app.insert_resource(inspector)
             .add_plugins(presets::plugin)
             .add_systems(Update, toggle)

@@ -100,7 +100,7 @@ presets! {
 #[cfg(feature = "salva")]
 pub(super) mod salva {
     use super::*;
-    use crate::salva::{SalvaBoundary, SalvaFluid};
+    use crate::source::salva::{SalvaBoundary, SalvaFluid};
 
     presets! {
         SalvaFluid: WATER, HONEY;

@@ -23,9 +23,9 @@ use super::{
 };
 use crate::{
     material::FluidMaterial,
-    particles::{FluidParticles, ShapedFluid},
     settings::{FluidDebugView, ScreenSpaceFluid},
     shape::Splat,
+    source::particles::{FluidParticles, ShapedFluid},
 };
 
 impl SyncComponent for ScreenSpaceFluid {

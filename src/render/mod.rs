@@ -54,8 +54,8 @@ pub use self::{
     support::LayerBlending,
 };
 use crate::{
-    particles::FluidParticles,
     settings::{FluidDebugView, ScreenSpaceFluid},
+    source::particles::FluidParticles,
 };
 
 /// The passes of a view, in [`Core3d`], for ordering other passes against them.

@@ -8,7 +8,7 @@ use crate::inspector::times;
 /// The frames that a fluid's player has loaded, and those that its writer has written.
 #[cfg(feature = "recordings")]
 pub(super) fn recordings(ui: &mut Ui, world: &World, fluid: Entity) {
-    use crate::recording::{LoadedFrames, WrittenFrames};
+    use crate::source::recording::{LoadedFrames, WrittenFrames};
 
     if let Some(frames) = world.get::<LoadedFrames>(fluid) {
         let shown = frames
@@ -38,7 +38,7 @@ pub(super) fn recordings(ui: &mut Ui, world: &World, fluid: Entity) {
 /// The status of live simulation.
 #[cfg(feature = "salva")]
 pub(super) fn live(ui: &mut Ui, world: &World) {
-    let Some(status) = world.get_resource::<crate::salva::SalvaStatus>() else {
+    let Some(status) = world.get_resource::<crate::source::salva::SalvaStatus>() else {
         return;
     };
     let lines = [

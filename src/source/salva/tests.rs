@@ -12,8 +12,8 @@ use super::{
     runner::Simulation,
 };
 use crate::{
-    emitter::{EmitterBounds, ParticleEmitter},
-    particles::FluidParticles,
+    source::emitter::{EmitterBounds, ParticleEmitter},
+    source::particles::FluidParticles,
 };
 
 const FRAME: Duration = Duration::from_millis(16);

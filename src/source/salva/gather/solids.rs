@@ -4,7 +4,7 @@ use bevy::{ecs::message::MessageCursor, prelude::*, transform::helper::Transform
 
 use crate::{
     complaints::Complaints,
-    salva::{
+    source::salva::{
         SalvaBody, SalvaBoundary, SalvaError, SalvaLoad, SalvaShape,
         runner::Simulation,
         shape::{recipe, split},

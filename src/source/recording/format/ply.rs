@@ -7,7 +7,7 @@ use ply_rs::{
 };
 
 use super::{IDS, RADII, ids, mean_radius};
-use crate::recording::ParticleFrame;
+use crate::source::recording::ParticleFrame;
 
 /// Longer headers are invalid.
 const MAX_HEADER: usize = 1 << 16;

@@ -6,9 +6,9 @@ use bevy::{
 
 use crate::{
     complaints::Complaints,
-    emitter::ParticleEmitter,
-    particles::FluidParticles,
-    salva::{
+    source::emitter::ParticleEmitter,
+    source::particles::FluidParticles,
+    source::salva::{
         SalvaError, SalvaFluid,
         runner::Simulation,
         world::{Command, Limits, Newborn, Substance},

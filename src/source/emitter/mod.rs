@@ -24,7 +24,7 @@ pub use self::{
 };
 
 pub(crate) use self::emission::Emission;
-use crate::{particles::FluidParticles, range::SettingRange, schedule::FluidSystems};
+use crate::{range::SettingRange, schedule::FluidSystems, source::particles::FluidParticles};
 
 /// Emits particles from its entity, which is a fluid made of them.
 ///

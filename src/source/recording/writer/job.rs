@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 
 use super::RecordingWriter;
-use crate::recording::{
+use crate::source::recording::{
     asset::RecordingSettings,
     error::RecordingError,
     frame::{FrameError, ParticleFrame},

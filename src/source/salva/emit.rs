@@ -7,7 +7,7 @@ use super::{
     runner::Simulation,
     world::{Command, Limits, Newborn},
 };
-use crate::emitter::{Emission, ParticleEmitter, step};
+use crate::source::emitter::{Emission, ParticleEmitter, step};
 
 /// Sends new particles to the simulation, and the limits of those that stay.
 pub(crate) fn emit(

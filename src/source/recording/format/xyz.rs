@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::recording::ParticleFrame;
+use crate::source::recording::ParticleFrame;
 
 pub(super) fn read(bytes: &[u8]) -> Result<ParticleFrame, String> {
     let (triples, []) = bytes.as_chunks::<12>() else {

@@ -8,7 +8,7 @@ use super::{
     shape::split,
     world::{Frame, blend},
 };
-use crate::particles::FluidParticles;
+use crate::source::particles::FluidParticles;
 
 /// The state shown last, which is not written again.
 #[derive(Default, PartialEq, Clone, Copy)]

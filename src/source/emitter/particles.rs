@@ -14,7 +14,7 @@ use super::{
     motion::Step,
     step,
 };
-use crate::{complaints::Complaints, particles::FluidParticles};
+use crate::{complaints::Complaints, source::particles::FluidParticles};
 
 /// Particles that one task moves.
 const CHUNK: usize = 4096;

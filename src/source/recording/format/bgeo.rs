@@ -10,7 +10,7 @@ use splashsurf_lib::io::bgeo_format::{
 };
 
 use super::{IDS, RADII, VELOCITIES, floats, ids, mean_radius};
-use crate::recording::ParticleFrame;
+use crate::source::recording::ParticleFrame;
 
 /// The most bytes after unzipping: a few kilobytes can be zipped gigabytes of nothing.
 const MAX_BYTES: u64 = 1 << 30;

@@ -9,7 +9,7 @@ use super::{
     player::{Interpolation, RecordingPlayer},
     playhead::{Playhead, moved_on},
 };
-use crate::particles::FluidParticles;
+use crate::source::particles::FluidParticles;
 
 pub(super) fn play(
     mut players: Query<(

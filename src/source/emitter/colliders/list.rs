@@ -12,7 +12,7 @@ use super::{
 
 /// All colliders during a step.
 #[derive(Debug)]
-pub(in crate::emitter) struct Colliders {
+pub(in crate::source::emitter) struct Colliders {
     /// Half-spaces first.
     list: Vec<Collider>,
     half_spaces: usize,
@@ -38,7 +38,7 @@ const NOWHERE: Aabb3d = Aabb3d {
 
 impl Colliders {
     /// Collects all colliders of this step.
-    pub(in crate::emitter) fn gather(
+    pub(in crate::source::emitter) fn gather(
         &mut self,
         colliders: &mut Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
     ) {
@@ -65,14 +65,19 @@ impl Colliders {
         }
     }
 
-    pub(in crate::emitter) fn list(&self) -> &[Collider] {
+    pub(in crate::source::emitter) fn list(&self) -> &[Collider] {
         &self.list
     }
 
     /// Whether a ball of `radius` may touch any collider on its straight path. May be true for a
     /// miss, never false for a hit.
     #[inline]
-    pub(in crate::emitter) fn any_near(&self, start: Vec3A, end: Vec3A, radius: f32) -> bool {
+    pub(in crate::source::emitter) fn any_near(
+        &self,
+        start: Vec3A,
+        end: Vec3A,
+        radius: f32,
+    ) -> bool {
         let is_near = |collider: &Collider| collider.is_near(start, end, radius);
         let (half_spaces, others) = self.list.split_at(self.half_spaces);
         half_spaces.iter().any(is_near)

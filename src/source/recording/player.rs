@@ -6,7 +6,7 @@ use bevy::{ecs::entity::EntityHashMap, prelude::*};
 use thiserror::Error;
 
 use super::{asset::FluidRecording, cache::LoadedFrames, frame::is_radius};
-use crate::{particles::FluidParticles, range::SettingRange};
+use crate::{range::SettingRange, source::particles::FluidParticles};
 
 const MAX_RATE: f32 = 100.0;
 const CACHES: [usize; 2] = [2, 1024];

@@ -10,7 +10,7 @@ use splashsurf_lib::vtkio::{
 };
 
 use super::{IDS, RADII, VELOCITIES, floats, ids, mean_radius};
-use crate::recording::ParticleFrame;
+use crate::source::recording::ParticleFrame;
 
 pub(super) fn read(bytes: &[u8]) -> Result<ParticleFrame, String> {
     let vtk = Vtk::parse_legacy_be(bytes).map_err(|error| error.to_string())?;

@@ -10,7 +10,7 @@ use bevy::{prelude::*, tasks::IoTaskPool};
 use self::job::description;
 pub use self::written::WrittenFrames;
 use super::{error::RecordingError, frame::is_radius, pattern::FramePattern};
-use crate::{particles::FluidParticles, range::SettingRange};
+use crate::{range::SettingRange, source::particles::FluidParticles};
 
 /// Frames of the clock may be a little short.
 const TOLERANCE: f64 = 1e-3;
@@ -78,7 +78,7 @@ pub struct ParticleAttributes {
     pub velocities: Vec<Vec3>,
 }
 
-pub(in crate::recording) fn record(
+pub(in crate::source::recording) fn record(
     mut writers: Query<(
         Ref<RecordingWriter>,
         &mut WrittenFrames,

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::job::Job;
-use crate::recording::frame::FrameError;
+use crate::source::recording::frame::FrameError;
 
 /// Counts of the frames that a [`RecordingWriter`](super::RecordingWriter) has written.
 #[derive(Component, Debug, Default)]

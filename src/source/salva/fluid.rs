@@ -2,7 +2,9 @@
 
 use bevy::prelude::*;
 
-use crate::{emitter::ExternalMotion, particles::FluidParticles, range::SettingRange};
+use crate::{
+    range::SettingRange, source::emitter::ExternalMotion, source::particles::FluidParticles,
+};
 
 /// A fluid simulated by salva.
 ///

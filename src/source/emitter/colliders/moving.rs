@@ -6,11 +6,11 @@ use bevy::{
 };
 
 use super::{ColliderShape, ParticleCollider};
-use crate::emitter::distance::Solid;
+use crate::source::emitter::distance::Solid;
 
 /// Where a collider was at the end of the last frame.
 #[derive(Component, Clone, Copy, Debug, Default)]
-pub(in crate::emitter) struct ColliderPath(Option<Pose>);
+pub(in crate::source::emitter) struct ColliderPath(Option<Pose>);
 
 /// Where a collider is, without its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,10 +31,10 @@ impl Pose {
 
 /// A collider in the world during a step.
 #[derive(Debug)]
-pub(in crate::emitter) struct Collider {
-    pub(in crate::emitter) solid: Solid,
-    pub(in crate::emitter) restitution: f32,
-    pub(in crate::emitter) friction: f32,
+pub(in crate::source::emitter) struct Collider {
+    pub(in crate::source::emitter) solid: Solid,
+    pub(in crate::source::emitter) restitution: f32,
+    pub(in crate::source::emitter) friction: f32,
     /// At the end of the step.
     world_from_local: Affine3A,
     local_from_world: Affine3A,
@@ -99,7 +99,7 @@ impl Collider {
 
     /// A point in the collider's space after a part of the step.
     #[inline]
-    pub(in crate::emitter) fn to_local(&self, part: f32, point: Vec3A) -> Vec3A {
+    pub(in crate::source::emitter) fn to_local(&self, part: f32, point: Vec3A) -> Vec3A {
         match self.pose(part) {
             Some(pose) => pose.to_local(point),
             None => self.local_from_world.transform_point3a(point),
@@ -108,7 +108,7 @@ impl Collider {
 
     /// A point of the collider in the world after a part of the step.
     #[inline]
-    pub(in crate::emitter) fn to_world(&self, part: f32, point: Vec3A) -> Vec3A {
+    pub(in crate::source::emitter) fn to_world(&self, part: f32, point: Vec3A) -> Vec3A {
         match self.pose(part) {
             Some(pose) => pose.to_world(point),
             None => self.world_from_local.transform_point3a(point),
@@ -117,7 +117,7 @@ impl Collider {
 
     /// A direction of the collider in the world after a part of the step.
     #[inline]
-    pub(in crate::emitter) fn turn(&self, part: f32, direction: Vec3A) -> Vec3A {
+    pub(in crate::source::emitter) fn turn(&self, part: f32, direction: Vec3A) -> Vec3A {
         match self.pose(part) {
             Some(pose) => pose.rotation * direction,
             None => self.world_from_local.transform_vector3a(direction),
@@ -132,13 +132,13 @@ impl Collider {
         })
     }
 
-    pub(in crate::emitter) fn moves(&self) -> bool {
+    pub(in crate::source::emitter) fn moves(&self) -> bool {
         self.path.is_some()
     }
 
     /// How far a point of it, in its own space, gets in the step.
     #[inline]
-    pub(in crate::emitter) fn way(&self, point: Vec3A) -> Vec3A {
+    pub(in crate::source::emitter) fn way(&self, point: Vec3A) -> Vec3A {
         self.path.map_or(Vec3A::ZERO, |[from, to]| {
             to.to_world(point) - from.to_world(point)
         })
@@ -147,7 +147,12 @@ impl Collider {
     /// Whether a ball of `radius` may touch it on its straight path. Cheap: may be true for a miss,
     /// never false for a hit.
     #[inline]
-    pub(in crate::emitter) fn is_near(&self, start: Vec3A, end: Vec3A, radius: f32) -> bool {
+    pub(in crate::source::emitter) fn is_near(
+        &self,
+        start: Vec3A,
+        end: Vec3A,
+        radius: f32,
+    ) -> bool {
         match &self.reach {
             Reach::Below([(from, from_height), (to, to_height)]) => {
                 (from.dot(start) - from_height).min(to.dot(end) - to_height) <= radius
