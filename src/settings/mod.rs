@@ -115,6 +115,27 @@ pub enum Smoothing {
     CurvatureFlow(CurvatureFlow),
 }
 
+impl Smoothing {
+    /// Whether normals come with it.
+    pub(crate) fn yields_normals(&self) -> bool {
+        matches!(self, Self::PlaneFit(_) | Self::NormalAverage(_))
+    }
+
+    /// The number of passes that read layers and write others.
+    pub(crate) fn layer_passes(&self) -> u32 {
+        match self {
+            Self::None | Self::NormalAverage(_) => 0,
+            Self::PlaneFit(fit) if fit.form == PlaneFitForm::Separable => {
+                2 * fit.iterations.saturating_sub(1)
+            }
+            Self::PlaneFit(fit) => fit.iterations,
+            Self::Bilateral(filter) => filter.iterations,
+            Self::NarrowRange(filter) => 2 * filter.iterations,
+            Self::CurvatureFlow(flow) => flow.iterations,
+        }
+    }
+}
+
 impl Default for Smoothing {
     fn default() -> Self {
         Self::PlaneFit(PlaneFit::DEFAULT)

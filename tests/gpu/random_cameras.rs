@@ -131,7 +131,7 @@ fn nothing_of_an_ellipsoid_is_outside_of_its_quad() {
             .iter()
             .map(|&p| Ellipsoid::new(&view, &scene.place, p, radius))
             .collect();
-        if view_bodies(app).is_none() {
+        if view_surfaces(app).is_none() {
             // Then no pixel's ray may meet any of it.
             for pixel in pixels(view.size) {
                 let ray = view.ray(View::center(pixel));

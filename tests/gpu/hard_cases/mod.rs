@@ -43,7 +43,7 @@ const STRETCHED: SurfaceKernel = SurfaceKernel {
 };
 
 /// One of a body's textures.
-type LayerOf = fn(&Layers) -> &Texture;
+type LayerOf = fn(&Layers) -> Option<&Texture>;
 
 #[track_caller]
 fn picture(app: &mut App) -> RgbaImage {

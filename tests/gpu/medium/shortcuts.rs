@@ -42,7 +42,7 @@ fn both(material: FluidMaterial) -> [(RgbaImage, Plan); 2] {
             scene(world, material);
         });
         furnace(&mut app, 0.4 * white());
-        (capture(&mut app).unwrap(), body(&app).plan)
+        (capture(&mut app).unwrap(), *surface(&app).0.plan().unwrap())
     })
 }
 

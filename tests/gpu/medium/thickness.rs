@@ -3,6 +3,7 @@
 use bevy_fluid::{FluidPlugin, LayerBlending, SurfaceKernel};
 
 use super::*;
+use bevy_fluid::render::Layers;
 
 fn smoke(softness: f32) -> FluidMaterial {
     FluidMaterial {
@@ -11,10 +12,9 @@ fn smoke(softness: f32) -> FluidMaterial {
     }
 }
 
-/// The only body's thickness, in m.
+/// The only surface's thickness, in m.
 fn thickness(app: &App) -> impl Fn(UVec2) -> f64 + use<> {
-    let texture = body(app).layers.thickness().expect("it is summed up");
-    let data = fluid_stage::read_texture(app, texture).unwrap();
+    let data = read(app, Layers::thickness);
     move |pixel| {
         let i = (pixel.y * data.size.x + pixel.x) as usize;
         f64::from(match data.format {
