@@ -3,7 +3,7 @@
 #import bevy_fluid::render::functions::{
     device_from_view, encode_normal, normal_from_slope, view_from_device, view_ray,
 }
-#import bevy_fluid::render::frame::view
+#import bevy_fluid::render::frame::frame
 #import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
 

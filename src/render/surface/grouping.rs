@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn another_material_in_between_splits_what_does_not_touch() {
         let all = [(false, 0.0), (false, 0.8), (true, 5.0), (false, 9.0)];
-        assert_eq!(sizes(&all), [(false, 2), (false, 1), (true, 1)]);
+        assert_eq!(sizes(&all), [(false, 2), (true, 1), (false, 1)]);
         // A chain whose boxes all touch cannot be split.
         let chain = [(false, 0.0), (true, 1.5), (false, 0.9), (false, 1.8)];
         assert_eq!(sizes(&chain), [(false, 3), (true, 1)]);
