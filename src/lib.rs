@@ -86,16 +86,15 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod complaints;
 pub mod diagnostics;
+#[cfg(test)]
+mod every_setting;
 #[cfg(feature = "inspector")]
 pub mod inspector;
-mod limits;
 mod material;
 mod medium;
 pub mod rain;
 mod random;
-mod range;
 pub mod render;
 mod schedule;
 mod settings;
@@ -112,20 +111,20 @@ pub use crate::source::recording;
 pub use crate::source::salva;
 pub use crate::{
     diagnostics::FluidDiagnosticsPlugin,
-    material::{FluidMaterial, MaterialError, Thickness},
-    medium::{Medium, MediumError},
+    material::{FluidMaterial, Thickness},
+    medium::Medium,
     rain::{Rain, RainPlugin},
-    range::SettingRange,
     render::LayerBlending,
     schedule::FluidSystems,
     settings::{
         Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NarrowRange, NormalAverage, PlaneFit,
-        PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, Window,
+        PlaneFitForm, Refractions, ScreenSpaceFluid, Search, SettingError, SettingRange, Settings,
+        Smoothing, Window,
     },
     shape::SurfaceKernel,
     source::emitter::{
-        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
-        ParticleCollider, ParticleEmitter,
+        ColliderShape, EmittedParticles, EmitterBounds, ExternalMotion, ParticleCollider,
+        ParticleEmitter,
     },
     source::particles::{FluidParticles, ShapedFluid},
 };
@@ -139,8 +138,14 @@ pub mod prelude {
     };
     pub use crate::{
         FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
-        ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,
+        ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, Settings, SurfaceKernel, Thickness,
     };
+}
+
+/// For this crate's own tests; it may change in any version.
+#[doc(hidden)]
+pub mod test_hooks {
+    pub use crate::settings::Checked;
 }
 
 /// Shapes and draws particle fluids.
@@ -169,7 +174,9 @@ impl Plugin for FluidPlugin {
             schedule::plugin,
             source::particles::plugin,
             source::emitter::plugin,
-            material::plugin,
+            settings::check::<FluidMaterial>,
+            settings::check::<SurfaceKernel>,
+            settings::check::<ScreenSpaceFluid>,
             render::FluidRenderPlugin {
                 layer_blending: self.layer_blending,
                 shortcuts: self.shortcuts,

@@ -38,7 +38,6 @@
 
 mod bake;
 pub(crate) mod births;
-mod check;
 mod clock;
 pub mod densities;
 mod draw;
@@ -54,11 +53,14 @@ use bevy::{
 
 pub use self::{
     bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
-    check::RainError,
     clock::RainClock,
     draw::RainQuads,
     drops::DragLaw,
     settings::{Exposure, Rain, RainMethod, RainShelter, RainStreaks},
+};
+use crate::{
+    schedule::FluidSystems,
+    settings::{Checked, check},
 };
 
 /// Draws rain for cameras with [`Rain`]; independent of `FluidPlugin`.
@@ -71,6 +73,9 @@ pub struct RainPlugin {
 
 impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
+        check::<Rain>(app);
+        check::<RainShelter>(app);
+        check::<RainStreaks>(app);
         app.register_type::<Rain>()
             .register_type::<RainShelter>()
             .register_type::<RainStreaks>()
@@ -82,13 +87,9 @@ impl Plugin for RainPlugin {
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
             .add_systems(
                 PostUpdate,
-                (
-                    check::check_rain,
-                    check::check_shelters,
-                    bake::bake_streaks,
-                    advance_clocks,
-                )
+                (settings::check_places, bake::bake_streaks, advance_clocks)
                     .chain()
+                    .after(FluidSystems::Check)
                     .after(TransformSystems::Propagate),
             )
             .add_plugins(draw::RainDrawPlugin);
@@ -96,7 +97,7 @@ impl Plugin for RainPlugin {
 }
 
 fn advance_clocks(
-    mut cameras: Query<(&Rain, &GlobalTransform, &mut RainClock)>,
+    mut cameras: Query<(&Checked<Rain>, &GlobalTransform, &mut RainClock)>,
     streaks: Res<BakedStreaks>,
     time: Res<Time>,
 ) {
@@ -104,7 +105,7 @@ fn advance_clocks(
         return;
     };
     for (rain, transform, mut clock) in &mut cameras {
-        let (wind, height) = (rain.clamped().wind, transform.translation().y);
+        let (wind, height) = (rain.wind, transform.translation().y);
         clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }

@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     material::FluidMaterial,
-    settings::{FluidDebugView, ScreenSpaceFluid},
+    settings::{Checked, FluidDebugView, ScreenSpaceFluid},
     shape::Splat,
     source::particles::{FluidParticles, ShapedFluid},
 };
@@ -34,7 +34,7 @@ impl SyncComponent for ScreenSpaceFluid {
 
 impl ExtractComponent for ScreenSpaceFluid {
     type QueryData = (
-        &'static Self,
+        &'static Checked<Self>,
         Option<&'static EnvironmentMapLight>,
         Option<&'static Skybox>,
         Option<&'static RenderLayers>,
@@ -68,7 +68,7 @@ impl ExtractComponent for ScreenSpaceFluid {
             layers: layers.cloned().unwrap_or_default(),
             ambient: ambient.map(|light| luminance(light.color, light.brightness)),
         };
-        Some((*settings, surroundings))
+        Some((**settings, surroundings))
     }
 }
 
@@ -204,7 +204,7 @@ pub(crate) fn extract_fluids(
             QueryState<(
                 RenderEntity,
                 &GlobalTransform,
-                Option<&FluidMaterial>,
+                Option<&Checked<FluidMaterial>>,
                 &FluidParticles,
                 &InheritedVisibility,
                 Option<&RenderLayers>,
@@ -226,7 +226,7 @@ pub(crate) fn extract_fluids(
             None => new.insert(ExtractedFluid::default()),
         };
         fluid.transform = *transform;
-        fluid.material = material.copied().unwrap_or_default().clamped();
+        fluid.material = material.map(|it| **it).unwrap_or_default();
         fluid.visible = visibility.get();
         fluid.local_radius = particles.radius;
         fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);

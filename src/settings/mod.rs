@@ -1,19 +1,27 @@
 //! How a camera draws fluids.
 
+mod check;
+mod checked;
 mod debug_view;
 mod plane_fit;
 mod published;
+mod range;
 mod tracing;
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
+#[cfg(test)]
+pub(crate) use self::check::for_each_number;
+pub(crate) use self::checked::check;
 pub use self::{
+    check::{SettingError, Settings},
+    checked::Checked,
     debug_view::FluidDebugView,
     plane_fit::{PlaneFit, PlaneFitForm},
     published::{Bilateral, CurvatureFlow, NarrowRange, NormalAverage},
+    range::SettingRange,
     tracing::{Fresnel, Refractions, Search},
 };
-use crate::range::SettingRange;
 
 /// Makes a camera draw particle fluids.
 ///
@@ -22,9 +30,11 @@ use crate::range::SettingRange;
 /// [`ScreenSpaceFluid::ACCURATE`] on either side. Their docs give times relative to the default, at
 /// 320×240 on a software driver, and the FLIP error against ray-traced pictures of a ball and of a
 /// half-filled box.
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(DepthPrepass, Hdr)]
+#[require(DepthPrepass, Hdr, Checked<Self>)]
 pub struct ScreenSpaceFluid {
     /// How the bumps of single particles are removed from the bulk. Default:
     /// [`PlaneFit::DEFAULT`].
@@ -90,6 +100,8 @@ impl ScreenSpaceFluid {
         contact: 0.0,
     };
 }
+
+impl Settings for ScreenSpaceFluid {}
 
 impl Default for ScreenSpaceFluid {
     fn default() -> Self {

@@ -156,7 +156,7 @@ impl Walker<'_> {
             macro_rules! numbers {
                 ($($type:ty),+) => {
                     $(if id == TypeId::of::<$type>() {
-                        return Some(Box::new(range.first() as $type));
+                        return Some(Box::new(range.initial_value() as $type));
                     })+
                 };
             }

@@ -4,7 +4,6 @@
 //! [`FluidSystems::Simulate`] moves all particles and writes them to the entity's
 //! [`FluidParticles`].
 
-mod check;
 mod colliders;
 mod contact;
 mod distance;
@@ -18,13 +17,16 @@ use core::f32::consts::PI;
 use bevy::prelude::*;
 
 pub use self::{
-    check::EmitterError,
     colliders::{ColliderShape, ParticleCollider},
     particles::EmittedParticles,
 };
 
 pub(crate) use self::emission::Emission;
-use crate::{range::SettingRange, schedule::FluidSystems, source::particles::FluidParticles};
+use crate::{
+    schedule::FluidSystems,
+    settings::{Checked, SettingError, SettingRange, Settings, check},
+    source::particles::FluidParticles,
+};
 
 /// Emits particles from its entity, which is a fluid made of them.
 ///
@@ -54,7 +56,7 @@ use crate::{range::SettingRange, schedule::FluidSystems, source::particles::Flui
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, EmittedParticles, Emission)]
+#[require(FluidParticles, EmittedParticles, Emission, Checked<Self>)]
 pub struct ParticleEmitter {
     /// Whether new particles are emitted. Default true. Existing particles fly on when it is off.
     pub enabled: bool,
@@ -66,7 +68,7 @@ pub struct ParticleEmitter {
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub speed: f32,
     /// Direction of emission, in the entity's space. Its length does not matter. Default: up, +y.
-    #[reflect(@SettingRange::new(-1.0, 1.0))]
+    #[reflect(@SettingRange::new(-1.0, 1.0).open())]
     pub direction: Vec3,
     /// Half angle of the cone of emission, which is filled evenly. Unit: rad, range 0..=π, default
     /// 0.05. Higher: from a jet to a spray, a half-space (π/2) and all directions (π).
@@ -85,7 +87,7 @@ pub struct ParticleEmitter {
     #[reflect(@SettingRange::new(1e-6, 1e6).unit("m").logarithmic())]
     pub particle_radius: f32,
     /// Age at which particles vanish. Unit: s, from 0, default 3. Infinite: never.
-    #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().open())]
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().valid(0.0, f64::INFINITY))]
     pub lifetime: f32,
     /// Acceleration of the particles, in world space. Unit: m/s², range −1000..=1000 each, default
     /// −9.81 along y.
@@ -105,7 +107,7 @@ pub struct ParticleEmitter {
     pub seed: u64,
     /// Number of particles to emit at once in the next step, which resets it to 0. Default 0. See
     /// [`burst`](Self::burst).
-    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
+    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic().open())]
     pub queued: u32,
 }
 
@@ -114,10 +116,10 @@ pub struct ParticleEmitter {
 #[reflect(Default, Clone, PartialEq)]
 pub struct EmitterBounds {
     /// Its lower corner. Unit: m, default −10 each.
-    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").valid(f64::NEG_INFINITY, f64::INFINITY))]
     pub min: Vec3,
     /// Its upper corner, nowhere below `min`. Unit: m, default 10 each.
-    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").valid(f64::NEG_INFINITY, f64::INFINITY))]
     pub max: Vec3,
 }
 
@@ -247,14 +249,37 @@ impl ParticleEmitter {
         self.enabled = false;
     }
 
-    /// The clamped settings for a step of `seconds`. If any time passes, the queue is emptied.
-    pub(crate) fn take(emitter: &mut Mut<Self>, seconds: f64) -> Self {
-        let taken = emitter.clamped();
+    /// The checked settings for a step of `seconds`. If any time passes, the queue is emptied.
+    pub(crate) fn take(emitter: &mut Mut<Self>, checked: &Checked<Self>, seconds: f64) -> Self {
+        let taken = Self {
+            queued: emitter.queued,
+            ..**checked
+        };
         if emitter.queued > 0 && seconds > 0.0 {
             // No setting has changed.
             emitter.bypass_change_detection().queued = 0;
         }
         taken
+    }
+}
+
+impl Settings for ParticleEmitter {
+    fn mend(&mut self) -> Result<(), SettingError> {
+        let mut mended = Ok(());
+        if self.direction.try_normalize().is_none() {
+            let (name, expected) = ("ParticleEmitter::direction", "finite and not zero");
+            mended = Err(SettingError::new(name, self.direction, expected));
+            self.direction = Self::DEFAULT.direction;
+        }
+        // Not for NaN either.
+        let is_box = |bounds: &EmitterBounds| bounds.min.cmple(bounds.max).all();
+        if let Some(EmitterBounds { min, max }) = self.bounds.filter(|it| !is_box(it)) {
+            let (name, value) = ("ParticleEmitter::bounds", format!("from {min} to {max}"));
+            let expected = "a box, with `min` nowhere above `max`";
+            mended = mended.and(Err(SettingError::new(name, value, expected)));
+            self.bounds = None;
+        }
+        mended
     }
 }
 
@@ -273,15 +298,16 @@ pub(crate) fn step(time: &Time) -> f64 {
 }
 
 pub(crate) fn plugin(app: &mut App) {
+    check::<ParticleEmitter>(app);
+    check::<ParticleCollider>(app);
     app.register_type::<ParticleEmitter>()
         .register_type::<ParticleCollider>()
         .register_type::<ExternalMotion>()
+        .add_observer(particles::stop)
         .add_systems(
             PostUpdate,
             (
-                (check::check_emitters, particles::emit)
-                    .chain()
-                    .in_set(FluidSystems::Emit),
+                particles::emit.in_set(FluidSystems::Emit),
                 particles::simulate.in_set(FluidSystems::Simulate),
             )
                 .chain()

@@ -69,8 +69,8 @@
 //!   body of particles of 5 cm); at 20 m/s it does not.
 //! - Threads: it does not run on the web.
 
-mod check;
 mod emit;
+mod error;
 mod fluid;
 mod gather;
 mod pace;
@@ -86,13 +86,13 @@ mod world;
 use bevy::prelude::*;
 
 pub use self::{
-    check::SalvaError,
+    error::SalvaError,
     fluid::SalvaFluid,
     settings::{SalvaMode, SalvaSettings, SalvaStatus},
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::schedule::FluidSystems;
+use crate::{schedule::FluidSystems, settings::check, source::emitter::ParticleEmitter};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
 /// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
@@ -106,6 +106,11 @@ pub struct SalvaSystems;
 
 impl Plugin for SalvaPlugin {
     fn build(&self, app: &mut App) {
+        check::<SalvaFluid>(app);
+        check::<SalvaBoundary>(app);
+        check::<SalvaBody>(app);
+        check::<SalvaSettings>(app);
+        check::<ParticleEmitter>(app);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()
@@ -131,6 +136,7 @@ impl Plugin for SalvaPlugin {
                 )
                     .chain()
                     .in_set(SalvaSystems)
+                    .after(FluidSystems::Check)
                     .before(TransformSystems::Propagate),
             )
             .add_systems(

@@ -153,7 +153,7 @@ fn what_makes_no_sense_is_said_once() {
     let camera = (0..1000).map(|_| world.spawn_empty().id()).last().unwrap();
     let bundle = self::camera(&VIEW, white_rain(20.0, 5.0));
     world.entity_mut(camera).insert(bundle);
-    let said = |what: &str| log::count(&format!("camera {camera}: `Rain::{what}"));
+    let said = |what: &str| log::count(&format!("entity {camera}: `Rain::{what}"));
     assert_eq!(said(""), 0);
     for frame in 0..3 {
         // Set anew in every frame, as by an animation.
