@@ -7,9 +7,14 @@ use std::time::Duration;
 use bevy::{prelude::*, reflect::PartialReflect};
 
 use crate::{
-    rain::{Exposure, RainShelter, RainStreaks},
-    settings::for_each_number,
-    *,
+    emitter::{ColliderShape, EmitterBounds},
+    prelude::*,
+    rain::{Exposure, RainShelter, RainStreakSettings},
+    settings::{
+        Bilateral, CurvatureFlow, NarrowRange, NormalAverage, PlaneFit, Search, Smoothing,
+        for_each_number,
+    },
+    shape::RADIUS,
 };
 
 /// A number as every type can take it.
@@ -167,7 +172,7 @@ fn rain() {
     check(Rain::default());
     check(RainShelter::default());
     for exposure in [Exposure::FrameTime, Exposure::Seconds(0.01)] {
-        check(RainStreaks {
+        check(RainStreakSettings {
             exposure,
             ..default()
         });
@@ -217,6 +222,6 @@ fn simulation() {
 #[test]
 fn a_radius_is_no_setting_to_clamp() {
     for (radius, is_valid) in [(0.02, true), (0.0, false), (-1.0, false), (f32::NAN, false)] {
-        assert_eq!(shape::RADIUS.contains(radius), is_valid);
+        assert_eq!(RADIUS.contains(radius), is_valid);
     }
 }

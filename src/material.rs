@@ -1,11 +1,9 @@
-//! Fluid materials: refractive index, medium, roughness and thickness.
+//! The material of a fluid: refractive index, medium, roughness and thickness.
 
 use bevy::prelude::*;
 
-use crate::{
-    medium::Medium,
-    settings::{Checked, SettingRange, Settings},
-};
+pub use crate::medium::Medium;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// The optical properties of a fluid.
 ///

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 
 /// The stages of particles within a frame, in this order, in [`PostUpdate`].
 ///
-/// Changes made to [`FluidParticles`](crate::FluidParticles) anywhere before
+/// Changes made to [`FluidParticles`](crate::particles::FluidParticles) anywhere before
 /// [`FluidSystems::Shape`] are on screen in the same frame.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub enum FluidSystems {

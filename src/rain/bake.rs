@@ -22,7 +22,7 @@ use bevy::{
 use super::{
     densities::DENSITIES,
     drops::mean_speed,
-    settings::{LONGEST_FRAME, Rain, RainStreaks},
+    settings::{LONGEST_FRAME, Rain, RainStreakSettings},
     streaks::{HEIGHT, MIP_LEVELS, STEPS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
 use crate::settings::Checked;
@@ -98,7 +98,7 @@ impl BakedStreaks {
 
 pub(crate) fn bake_streaks(
     rains: Query<&Checked<Rain>>,
-    settings: Single<&Checked<RainStreaks>>,
+    settings: Single<&Checked<RainStreakSettings>>,
     synchronous: Res<SynchronousBake>,
     lost_devices: Res<LostDevices>,
     time: Res<Time>,

@@ -51,12 +51,13 @@ use bevy::{
     prelude::*,
 };
 
+#[doc(hidden)]
+pub use self::draw::RainQuads;
 pub use self::{
     bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
     clock::RainClock,
-    draw::RainQuads,
     drops::DragLaw,
-    settings::{Exposure, Rain, RainMethod, RainShelter, RainStreaks},
+    settings::{Exposure, Rain, RainMethod, RainShelter, RainStreakSettings},
 };
 use crate::{
     schedule::FluidSystems,
@@ -75,11 +76,11 @@ impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
         check::<Rain>(app);
         check::<RainShelter>(app);
-        check::<RainStreaks>(app);
+        check::<RainStreakSettings>(app);
         app.register_type::<Rain>()
             .register_type::<RainShelter>()
-            .register_type::<RainStreaks>()
-            .init_resource::<RainStreaks>()
+            .register_type::<RainStreakSettings>()
+            .init_resource::<RainStreakSettings>()
             .init_resource::<BakedStreaks>()
             .init_resource::<bake::LostDevices>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))

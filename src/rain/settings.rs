@@ -98,7 +98,7 @@ pub enum RainMethod {
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
 #[require(Checked<Self>)]
-pub struct RainStreaks {
+pub struct RainStreakSettings {
     /// Exposure time: streaks are as long as the distance that drops fall in it.
     pub exposure: Exposure,
     /// How fast drops fall. Default [`DragLaw::GunnKinzer`].
@@ -107,7 +107,7 @@ pub struct RainStreaks {
     pub seed: u64,
 }
 
-impl Settings for RainStreaks {}
+impl Settings for RainStreakSettings {}
 
 /// An exposure time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -288,15 +288,15 @@ mod tests {
             (-1.0, SHORTEST_EXPOSURE),
             (f32::NAN, DEFAULT_EXPOSURE),
         ] {
-            let streaks = RainStreaks {
+            let streaks = RainStreakSettings {
                 exposure: Exposure::Seconds(seconds),
                 ..default()
             };
             let error = streaks.validate().unwrap_err();
-            assert_eq!(error.name, "RainStreaks::exposure");
+            assert_eq!(error.name, "RainStreakSettings::exposure");
             let expected = Exposure::Seconds(expected);
             assert_eq!(streaks.clamped().exposure, expected);
         }
-        assert_eq!(RainStreaks::default().validate(), Ok(()));
+        assert_eq!(RainStreakSettings::default().validate(), Ok(()));
     }
 }

@@ -1,4 +1,4 @@
-//! How a camera draws fluids.
+//! How a camera draws fluids, and the one check of all settings.
 
 mod check;
 mod checked;
@@ -12,10 +12,11 @@ use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
 #[cfg(test)]
 pub(crate) use self::check::for_each_number;
+#[doc(hidden)]
+pub use self::checked::Checked;
 pub(crate) use self::checked::check;
 pub use self::{
     check::{SettingError, Settings},
-    checked::Checked,
     debug_view::FluidDebugView,
     plane_fit::{PlaneFit, PlaneFitForm},
     published::{Bilateral, CurvatureFlow, NarrowRange, NormalAverage},
@@ -79,7 +80,7 @@ impl ScreenSpaceFluid {
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick. Use
-    /// it with [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
+    /// it with [`SurfaceKernel::THESIS`](crate::shape::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
     /// (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
@@ -90,7 +91,7 @@ impl ScreenSpaceFluid {
     };
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
-    /// with [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class. Time
+    /// with [`SurfaceKernel::EARLIER`](crate::shape::SurfaceKernel::EARLIER): spheres of one class. Time
     /// 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),

@@ -10,7 +10,7 @@ use bevy::reflect::{NamedField, Reflect, UnnamedField};
 ///
 /// ```
 /// use bevy::reflect::{Reflect, TypeInfo, Typed};
-/// use bevy_fluid::SettingRange;
+/// use bevy_fluid::settings::SettingRange;
 ///
 /// #[derive(Reflect)]
 /// struct Pipe {

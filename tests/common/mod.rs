@@ -18,9 +18,9 @@ use bevy::{
     render::{RenderApp, render_resource::Texture},
 };
 use bevy_fluid::{
-    Fresnel, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel,
     prelude::*,
     render::{Body, Layers, ViewBodies},
+    settings::{Fresnel, Refractions, Search, Smoothing},
 };
 use fluid_stage::{TextureData, headless_app, read_texture};
 

@@ -1,7 +1,11 @@
 //! Settings out of range: what is drawn and simulated reads a clamped copy, and one line is logged.
 
 use bevy::{prelude::*, shader::Shader};
-use bevy_fluid::{PlaneFit, Smoothing, Window, prelude::*, test_hooks::Checked};
+use bevy_fluid::{
+    prelude::*,
+    settings::{PlaneFit, Smoothing, Window},
+    test_hooks::Checked,
+};
 use fluid_stage::log;
 
 /// An app without a renderer, and an entity that other tests' apps log nothing about.
@@ -124,7 +128,10 @@ fn a_fluid_with_an_invalid_kernel_is_shaped() {
     let kernel = checked::<SurfaceKernel>(&app, fluid);
     assert_eq!(kernel.neighbor_radius, 4.0);
     assert_eq!((kernel.sphere_neighbors, kernel.full_neighbors), (10, 10));
-    let shaped = app.world().get::<bevy_fluid::ShapedFluid>(fluid).unwrap();
+    let shaped = app
+        .world()
+        .get::<bevy_fluid::particles::ShapedFluid>(fluid)
+        .unwrap();
     assert_eq!(shaped.spray(), 1);
     assert_eq!(log::count(&format!("entity {fluid}: `SurfaceKernel::")), 1);
 }

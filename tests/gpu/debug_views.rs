@@ -2,7 +2,7 @@
 
 use crate::common::{BULK, Lens, RAW, SPRAY, View, body, fluid, look, pixels, pour, show};
 use bevy::{prelude::*, render::render_resource::TextureFormat};
-use bevy_fluid::{FluidDebugView, ScreenSpaceFluid, prelude::*};
+use bevy_fluid::{prelude::*, settings::FluidDebugView};
 use fluid_stage::{capture, read_texture};
 
 /// A sphere of radius 1 m fills it but for a margin. The middle pixel sees its centre.

@@ -14,7 +14,8 @@ use bevy::{
     },
 };
 use bevy_fluid::{
-    FluidMaterial, FluidParticles, FluidPlugin, ShapedFluid,
+    particles::ShapedFluid,
+    prelude::{FluidMaterial, FluidParticles, FluidPlugin},
     render::{Body, ExitRay, FluidPasses, Layers, ViewBodies, decode_normal, encode_normal},
 };
 use fluid_reference::{

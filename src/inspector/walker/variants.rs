@@ -14,8 +14,8 @@ use core::any::TypeId;
 
 use super::{Walker, has_widget};
 use crate::{
-    SettingRange,
     inspector::widgets::{Field, VALUE, explained},
+    settings::SettingRange,
 };
 
 impl Walker<'_> {

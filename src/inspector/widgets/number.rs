@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::egui::{DragValue, Id, RichText, Slider, SliderClamping, Ui};
 
 use super::{GAP, NUMBER, SLIDER, VALUE, digits};
-use crate::SettingRange;
+use crate::settings::SettingRange;
 
 /// A slider, where there is a range, and the number. Whether it was changed.
 pub(super) fn number(

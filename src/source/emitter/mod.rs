@@ -73,11 +73,11 @@ pub struct ParticleEmitter {
     /// Half angle of the cone of emission, which is filled evenly. Unit: rad, range 0..=π, default
     /// 0.05. Higher: from a jet to a spray, a half-space (π/2) and all directions (π).
     #[reflect(@SettingRange::new(0.0, PI as f64).unit("rad"))]
-    pub spread: f32,
+    pub cone_half_angle: f32,
     /// Radius of the nozzle, a disc across the direction, in the entity's space. Unit: m, range
     /// 0..=1000, default 0.05. 0: a point.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic())]
-    pub nozzle: f32,
+    pub nozzle_radius: f32,
     /// Random velocity added to each particle, uniform in a ball of this radius. Unit: m/s, range
     /// 0..=1000, default 0.1. Higher: the jet breaks up sooner.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
@@ -108,7 +108,7 @@ pub struct ParticleEmitter {
     /// Number of particles to emit at once in the next step, which resets it to 0. Default 0. See
     /// [`burst`](Self::burst).
     #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic().open())]
-    pub queued: u32,
+    pub pending_burst: u32,
 }
 
 /// A box in the space of an emitter's entity.
@@ -146,8 +146,8 @@ impl ParticleEmitter {
         rate: 1000.0,
         speed: 4.0,
         direction: Vec3::Y,
-        spread: 0.05,
-        nozzle: 0.05,
+        cone_half_angle: 0.05,
+        nozzle_radius: 0.05,
         jitter: 0.1,
         particle_radius: 0.02,
         lifetime: 3.0,
@@ -156,7 +156,7 @@ impl ParticleEmitter {
         bounds: None,
         capacity: 100_000,
         seed: 0,
-        queued: 0,
+        pending_burst: 0,
     };
 
     /// A garden hose along the entity's forward direction (−z).
@@ -167,8 +167,8 @@ impl ParticleEmitter {
     pub const SHOWER: Self = Self::shower(2000.0, 0.5);
     /// A fan of fine drops around the entity's forward direction (−z), which the air slows down.
     pub const SPRAY: Self = Self {
-        spread: 0.5,
-        nozzle: 0.01,
+        cone_half_angle: 0.5,
+        nozzle_radius: 0.01,
         particle_radius: 0.008,
         drag: 1.0,
         ..Self::jet(6000.0, 6.0)
@@ -178,8 +178,8 @@ impl ParticleEmitter {
         rate: 2.0,
         speed: 0.0,
         direction: Vec3::NEG_Y,
-        spread: 0.0,
-        nozzle: 0.0,
+        cone_half_angle: 0.0,
+        nozzle_radius: 0.0,
         jitter: 0.0,
         ..Self::DEFAULT
     };
@@ -191,7 +191,7 @@ impl ParticleEmitter {
             rate,
             speed,
             direction: Vec3::NEG_Z,
-            spread: 0.02,
+            cone_half_angle: 0.02,
             jitter: 0.015 * speed,
             ..Self::DEFAULT
         }
@@ -202,21 +202,21 @@ impl ParticleEmitter {
         Self {
             rate,
             speed,
-            spread: 0.15,
-            nozzle: 0.03,
+            cone_half_angle: 0.15,
+            nozzle_radius: 0.03,
             jitter: 0.03 * speed,
             ..Self::DEFAULT
         }
     }
 
-    /// Drops that fall from a disc of radius `nozzle` (m): `rate` drops per second.
-    pub const fn shower(rate: f32, nozzle: f32) -> Self {
+    /// Drops that fall from a disc of `nozzle_radius` (m): `rate` drops per second.
+    pub const fn shower(rate: f32, nozzle_radius: f32) -> Self {
         Self {
             rate,
             speed: 2.0,
             direction: Vec3::NEG_Y,
-            spread: 0.0,
-            nozzle,
+            cone_half_angle: 0.0,
+            nozzle_radius,
             ..Self::DEFAULT
         }
     }
@@ -227,7 +227,7 @@ impl ParticleEmitter {
         Self {
             rate: 0.0,
             speed,
-            spread: PI,
+            cone_half_angle: PI,
             jitter: 0.3 * speed,
             ..Self::DEFAULT
         }
@@ -236,7 +236,7 @@ impl ParticleEmitter {
     /// Emits `count` particles at once in the next step, whether or not the emitter is enabled.
     /// Counts requested before that step add up.
     pub fn burst(&mut self, count: u32) {
-        self.queued = self.queued.saturating_add(count);
+        self.pending_burst = self.pending_burst.saturating_add(count);
     }
 
     /// Starts emission.
@@ -252,12 +252,12 @@ impl ParticleEmitter {
     /// The checked settings for a step of `seconds`. If any time passes, the queue is emptied.
     pub(crate) fn take(emitter: &mut Mut<Self>, checked: &Checked<Self>, seconds: f64) -> Self {
         let taken = Self {
-            queued: emitter.queued,
+            pending_burst: emitter.pending_burst,
             ..**checked
         };
-        if emitter.queued > 0 && seconds > 0.0 {
+        if emitter.pending_burst > 0 && seconds > 0.0 {
             // No setting has changed.
-            emitter.bypass_change_detection().queued = 0;
+            emitter.bypass_change_detection().pending_burst = 0;
         }
         taken
     }

@@ -62,8 +62,8 @@ pub use self::{
 };
 use crate::{schedule::FluidSystems, settings::check};
 
-/// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; it also works without
-/// that plugin, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
+/// Plays and writes recordings. Part of [`FluidPlugins`](crate::FluidPlugins); it also works without
+/// the others, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
 /// `Time`.
 ///
 /// Players run in [`FluidSystems::Simulate`]; writers run after it.

@@ -19,7 +19,7 @@ use crate::{
 /// logged once and not simulated. Fluids of different [`density`](Self::density) press on each
 /// other and separate.
 ///
-/// A [`ParticleEmitter`](crate::ParticleEmitter) on its entity emits particles into the simulation,
+/// A [`ParticleEmitter`](crate::emitter::ParticleEmitter) on its entity emits particles into the simulation,
 /// no more than fit beside each other; its lifetime, capacity and bounds apply, its gravity and
 /// drag do not. Values out of range are logged once and clamped.
 ///

@@ -37,7 +37,7 @@
 //!
 //! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
 //! gathered, the next steps begin on other threads, and positions interpolated between the last two
-//! finished states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies'
+//! finished states are written to [`FluidParticles`](crate::particles::FluidParticles) and to the bodies'
 //! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
 //! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
 //! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] limits how much of a
@@ -95,7 +95,8 @@ pub use self::{
 use crate::{schedule::FluidSystems, settings::check, source::emitter::ParticleEmitter};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
-/// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
+/// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
+/// fluids; the simulation also runs without it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SalvaPlugin;
 

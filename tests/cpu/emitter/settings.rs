@@ -1,6 +1,6 @@
 //! Values that are invalid.
 
-use bevy_fluid::{ColliderShape, EmitterBounds};
+use bevy_fluid::emitter::{ColliderShape, EmitterBounds};
 
 use super::*;
 
@@ -9,8 +9,8 @@ type Emitter = ParticleEmitter;
 const EMITTER_FIELDS: [(&str, fn(&mut Emitter, f32)); 11] = [
     ("rate", |e, v| e.rate = v),
     ("speed", |e, v| e.speed = v),
-    ("spread", |e, v| e.spread = v),
-    ("nozzle", |e, v| e.nozzle = v),
+    ("cone_half_angle", |e, v| e.cone_half_angle = v),
+    ("nozzle_radius", |e, v| e.nozzle_radius = v),
     ("jitter", |e, v| e.jitter = v),
     ("particle_radius", |e, v| e.particle_radius = v),
     ("lifetime", |e, v| e.lifetime = v),

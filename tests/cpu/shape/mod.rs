@@ -2,7 +2,7 @@
 
 use bevy::math::{EulerRot, Mat3, Quat, Vec3};
 use bevy_fluid::{
-    Settings,
+    prelude::Settings,
     shape::{FluidSplats, ShapeError, ShapeWorkspace, Splat, SurfaceKernel},
 };
 use proptest::prelude::*;

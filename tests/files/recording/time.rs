@@ -4,7 +4,7 @@ use std::fs;
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    FluidParticles,
+    prelude::FluidParticles,
     recording::{Interpolation, RecordingPlayer},
 };
 

@@ -4,7 +4,7 @@ use std::{fs, iter, path::Path, sync::mpsc};
 
 use bevy::{prelude::*, tasks::IoTaskPool};
 use bevy_fluid::{
-    FluidParticles, FluidSystems,
+    prelude::{FluidParticles, FluidSystems},
     recording::{
         FluidRecording, ParticleAttributes, ParticleFrame, RecordingPlayer, RecordingWriter,
         WrittenFrames,
