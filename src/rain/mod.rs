@@ -88,7 +88,12 @@ impl Plugin for RainPlugin {
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
             .add_systems(
                 PostUpdate,
-                (settings::check_places, bake::bake_streaks, advance_clocks)
+                (
+                    settings::check_places,
+                    // A program without a renderer may have no images.
+                    bake::bake_streaks.run_if(resource_exists::<Assets<Image>>),
+                    advance_clocks,
+                )
                     .chain()
                     .after(FluidSystems::Check)
                     .after(TransformSystems::Propagate),

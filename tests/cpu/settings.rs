@@ -14,7 +14,7 @@ fn app() -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
         .init_asset::<Shader>()
-        .add_plugins((FluidPlugin::default(), RainPlugin::default()));
+        .add_plugins(FluidPlugins);
     app.finish();
     app.cleanup();
     let world = app.world_mut();
