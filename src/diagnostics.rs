@@ -4,7 +4,7 @@
 //!
 //! ```no_run
 //! use bevy::{diagnostic::LogDiagnosticsPlugin, prelude::*};
-//! use bevy_fluid::{FluidDiagnosticsPlugin, prelude::*};
+//! use bevy_fluid::{diagnostics::FluidDiagnosticsPlugin, prelude::*};
 //!
 //! App::new()
 //!     .add_plugins((
@@ -42,7 +42,7 @@ use bevy::{
 
 #[cfg(feature = "recordings")]
 use crate::source::recording::LoadedFrames;
-use crate::{EmittedParticles, FluidSystems, ShapedFluid, shape::ShapeTimes};
+use crate::{FluidSystems, emitter::EmittedParticles, particles::ShapedFluid, shape::ShapeTimes};
 
 /// Particles of all fluids, dropped ones included.
 pub const PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/particles");

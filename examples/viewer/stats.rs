@@ -4,7 +4,9 @@ use std::{path::Path, time::Duration};
 
 use anyhow::{Context, anyhow};
 use bevy::{diagnostic::DiagnosticsStore, prelude::*, render::RenderApp};
-use bevy_fluid::{FluidParticles, ShapedFluid, render::Layers, shape::ShapeTimes};
+use bevy_fluid::{
+    particles::ShapedFluid, prelude::FluidParticles, render::Layers, shape::ShapeTimes,
+};
 use fluid_stage::{Stage, adapter_name, median_gpu_ms, read_texture};
 use serde::Serialize;
 

@@ -6,8 +6,11 @@ use bevy::{
 };
 
 use crate::{
-    Bilateral, FluidMaterial, Medium, ParticleEmitter, PlaneFit, Rain, ScreenSpaceFluid,
-    SurfaceKernel,
+    emitter::ParticleEmitter,
+    material::{FluidMaterial, Medium},
+    rain::Rain,
+    settings::{Bilateral, PlaneFit, ScreenSpaceFluid},
+    shape::SurfaceKernel,
 };
 
 /// A setting with named values. The inspector offers them if [`ReflectPresets`] is registered for

@@ -8,7 +8,7 @@ use super::{
     widgets::{LABEL, WIDTH, digits},
 };
 use crate::{
-    ShapedFluid,
+    particles::ShapedFluid,
     render::{PlanReports, Skipped, SurfaceReport},
 };
 

@@ -24,7 +24,8 @@ use super::{
     thickness::ThicknessPipeline,
 };
 use crate::{
-    FluidMaterial, FluidPlugin,
+    FluidPlugin,
+    material::FluidMaterial,
     settings::{
         Bilateral, FluidDebugView, NarrowRange, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing,
     },

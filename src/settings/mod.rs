@@ -1,19 +1,28 @@
-//! How a camera draws fluids.
+//! How a camera draws fluids, and the one check of all settings.
 
+mod check;
+mod checked;
 mod debug_view;
 mod plane_fit;
 mod published;
+mod range;
 mod tracing;
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
+#[cfg(test)]
+pub(crate) use self::check::for_each_number;
+#[doc(hidden)]
+pub use self::checked::Checked;
+pub(crate) use self::checked::check;
 pub use self::{
+    check::{SettingError, Settings},
     debug_view::FluidDebugView,
     plane_fit::{PlaneFit, PlaneFitForm},
     published::{Bilateral, CurvatureFlow, NarrowRange, NormalAverage},
+    range::SettingRange,
     tracing::{Fresnel, Refractions, Search},
 };
-use crate::range::SettingRange;
 
 /// Makes a camera draw particle fluids.
 ///
@@ -22,9 +31,11 @@ use crate::range::SettingRange;
 /// [`ScreenSpaceFluid::ACCURATE`] on either side. Their docs give times relative to the default, at
 /// 320×240 on a software driver, and the FLIP error against ray-traced pictures of a ball and of a
 /// half-filled box.
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(DepthPrepass, Hdr)]
+#[require(DepthPrepass, Hdr, Checked<Self>)]
 pub struct ScreenSpaceFluid {
     /// How the bumps of single particles are removed from the bulk. Default:
     /// [`PlaneFit::DEFAULT`].
@@ -69,7 +80,7 @@ impl ScreenSpaceFluid {
     };
 
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick. Use
-    /// it with [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
+    /// it with [`SurfaceKernel::THESIS`](crate::shape::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
     /// (ball) of the default's; FLIP 0.56 and 0.43.
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
@@ -80,7 +91,7 @@ impl ScreenSpaceFluid {
     };
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
-    /// with [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class. Time
+    /// with [`SurfaceKernel::EARLIER`](crate::shape::SurfaceKernel::EARLIER): spheres of one class. Time
     /// 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
@@ -90,6 +101,8 @@ impl ScreenSpaceFluid {
         contact: 0.0,
     };
 }
+
+impl Settings for ScreenSpaceFluid {}
 
 impl Default for ScreenSpaceFluid {
     fn default() -> Self {

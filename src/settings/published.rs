@@ -2,8 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::Window;
-use crate::range::SettingRange;
+use super::{SettingRange, Window};
 
 /// Bilateral smoothing (thesis 3.2, equation 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]

@@ -1,7 +1,7 @@
 //! Sources: where a fluid's particles come from. None of them knows how they are drawn.
 
-pub(crate) mod emitter;
-pub(crate) mod particles;
+pub mod emitter;
+pub mod particles;
 #[cfg(feature = "recordings")]
 pub mod recording;
 #[cfg(feature = "salva")]

@@ -21,9 +21,9 @@ use bevy::{
     },
 };
 use bevy_fluid::{
-    Fresnel, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel,
     prelude::*,
     render::{Layers, Surface, ViewSurfaces},
+    settings::{Fresnel, Refractions, Search, Smoothing},
 };
 use fluid_stage::{TextureData, headless_app, read_texture};
 

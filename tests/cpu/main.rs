@@ -8,4 +8,5 @@ mod emitter;
 mod random_clouds;
 mod readme;
 mod salva;
+mod settings;
 mod shape;

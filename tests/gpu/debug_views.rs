@@ -2,7 +2,7 @@
 
 use crate::common::{BULK, Lens, RAW, SPRAY, View, fluid, look, pixels, pour, read, show, surface};
 use bevy::{prelude::*, render::render_resource::TextureFormat};
-use bevy_fluid::{FluidDebugView, ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers, settings::FluidDebugView};
 use fluid_stage::capture;
 
 /// A sphere of radius 1 m fills it but for a margin. The middle pixel sees its centre.

@@ -13,7 +13,7 @@ use bevy::{
         settings::{RenderCreation, WgpuSettings},
     },
 };
-use bevy_fluid::{ScreenSpaceFluid, ShapedFluid, SurfaceKernel, prelude::*};
+use bevy_fluid::{particles::ShapedFluid, prelude::*};
 use fluid_stage::{Stage, capture, headless_app_with, step};
 
 const VIEW: View = View::new(

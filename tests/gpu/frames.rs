@@ -6,10 +6,7 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_fluid::{
-    FluidDebugView, Medium, ScreenSpaceFluid, ShapedFluid, SurfaceKernel, prelude::*,
-    render::GpuSplats,
-};
+use bevy_fluid::{particles::ShapedFluid, prelude::*, render::GpuSplats, settings::FluidDebugView};
 use fluid_stage::{capture, headless_app, resize, step, validation_errors};
 use image::{RgbaImage, imageops::crop_imm};
 

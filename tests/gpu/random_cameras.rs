@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 
 use crate::common::*;
 use bevy::{camera::CameraProjection, prelude::*};
-use bevy_fluid::{SurfaceKernel, render::Layers};
+use bevy_fluid::{prelude::SurfaceKernel, render::Layers};
 use proptest::{prelude::*, test_runner::TestRunner};
 
 /// Any lens at all: of any angle, parallel, off-centre, mirrored, oblique.

@@ -15,7 +15,8 @@ use bevy::{
     },
 };
 use bevy_fluid::{
-    FluidMaterial, FluidParticles, FluidPlugin, ShapedFluid,
+    particles::ShapedFluid,
+    prelude::{FluidMaterial, FluidParticles, FluidPlugin},
     render::{ExitRay, FluidPasses, Layers, ViewSurfaces, decode_normal, encode_normal},
 };
 use fluid_reference::{

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::egui::{CollapsingHeader, RichText, Ui};
 
 use super::Subjects;
-use crate::{ShapedFluid, inspector::times};
+use crate::{inspector::times, particles::ShapedFluid};
 
 /// Particles by class, of the fluid and of all.
 pub(super) fn counts(ui: &mut Ui, world: &World, fluid: Entity, subjects: &Subjects) {

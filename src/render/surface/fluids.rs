@@ -10,6 +10,7 @@ use bevy::{
 use super::bounds::Bounds;
 use crate::{
     material::FluidMaterial,
+    settings::Checked,
     shape::Splat,
     source::particles::{FluidParticles, ShapedFluid},
 };
@@ -49,7 +50,7 @@ pub(super) fn extract_fluids(
             QueryState<(
                 RenderEntity,
                 &GlobalTransform,
-                Option<&FluidMaterial>,
+                Option<&Checked<FluidMaterial>>,
                 &FluidParticles,
                 &InheritedVisibility,
                 Option<&RenderLayers>,
@@ -70,7 +71,7 @@ pub(super) fn extract_fluids(
             .as_deref_mut()
             .unwrap_or_else(|| new.insert(ExtractedFluid::default()));
         fluid.transform = *transform;
-        fluid.material = material.copied().unwrap_or_default().clamped();
+        fluid.material = material.map(|it| **it).unwrap_or_default();
         fluid.visible = visibility.get();
         fluid.local_radius = particles.radius;
         fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);

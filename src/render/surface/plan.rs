@@ -116,7 +116,7 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
     if !input.in_view || !(bulk || spray) {
         return None;
     }
-    let material = input.material.clamped();
+    let material = &input.material;
     let unbent = (material.refractive_index - 1.0).abs() < 1e-6;
     let accumulated = unbent && material.thickness != Thickness::Layers;
     let index_one = accumulated || unbent && input.shortcuts;

@@ -6,7 +6,7 @@ use bevy::{
     render::{Extract, sync_component::SyncComponent, sync_world::RenderEntity},
 };
 
-use crate::settings::{FluidDebugView, ScreenSpaceFluid};
+use crate::settings::{Checked, FluidDebugView, ScreenSpaceFluid};
 
 /// A camera's settings.
 #[derive(Component, Clone, Default)]
@@ -26,7 +26,7 @@ pub(crate) fn extract_views(
         Query<
             (
                 RenderEntity,
-                &ScreenSpaceFluid,
+                &Checked<ScreenSpaceFluid>,
                 Option<&FluidDebugView>,
                 Option<&RenderLayers>,
             ),
@@ -42,7 +42,7 @@ pub(crate) fn extract_views(
         let view = known
             .as_deref_mut()
             .unwrap_or_else(|| new.insert(FluidView::default()));
-        view.settings = *settings;
+        view.settings = **settings;
         view.debug_view = debug_view.copied();
         view.layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));

@@ -7,14 +7,14 @@ use bevy::{
 use rayon::prelude::*;
 
 use super::{
-    EmitterBounds, EmitterError, ExternalMotion, ParticleCollider, ParticleEmitter,
+    EmitterBounds, ExternalMotion, ParticleCollider, ParticleEmitter,
     colliders::{ColliderPath, Colliders},
     emission::{Birth, Emission},
     flight::Forces,
     motion::Step,
     step,
 };
-use crate::{complaints::Complaints, source::particles::FluidParticles};
+use crate::{settings::Checked, source::particles::FluidParticles};
 
 /// Particles that one task moves.
 const CHUNK: usize = 4096;
@@ -36,6 +36,8 @@ pub struct EmittedParticles {
     ages: Vec<f32>,
     /// The transform that [`FluidParticles`] has been written with.
     written: Option<Affine3A>,
+    /// Whether the transform has no inverse, so that particles have no place in the entity's space.
+    is_nowhere: bool,
 }
 
 impl EmittedParticles {
@@ -185,11 +187,23 @@ impl Chunk<'_> {
     }
 }
 
+/// An emitter that is inserted again elsewhere has not moved there from here.
+pub(super) fn stop(
+    removed: On<Remove, ParticleEmitter>,
+    mut emitters: Query<(&mut Emission, &mut EmittedParticles)>,
+) {
+    if let Ok((mut emission, mut particles)) = emitters.get_mut(removed.entity) {
+        *emission = default();
+        particles.is_nowhere = false;
+    }
+}
+
 /// Emits particles.
 pub(super) fn emit(
     mut emitters: Query<
         (
             Mut<ParticleEmitter>,
+            &Checked<ParticleEmitter>,
             &GlobalTransform,
             &mut Emission,
             &mut EmittedParticles,
@@ -199,8 +213,8 @@ pub(super) fn emit(
     time: Res<Time>,
 ) {
     let seconds = step(&time);
-    for (mut emitter, transform, mut emission, mut particles) in &mut emitters {
-        let settings = ParticleEmitter::take(&mut emitter, seconds);
+    for (mut emitter, checked, transform, mut emission, mut particles) in &mut emitters {
+        let settings = ParticleEmitter::take(&mut emitter, checked, seconds);
         emission.emit(&settings, transform, seconds, |birth: Birth| {
             particles.positions.push(birth.position);
             particles.velocities.push(birth.velocity);
@@ -217,26 +231,24 @@ pub(super) fn simulate(
     mut emitters: Query<
         (
             Entity,
-            &ParticleEmitter,
+            &Checked<ParticleEmitter>,
             &GlobalTransform,
             &mut EmittedParticles,
             &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
-    mut colliders: Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
-    mut gone: RemovedComponents<ParticleEmitter>,
+    mut colliders: Query<(
+        &Checked<ParticleCollider>,
+        &GlobalTransform,
+        &mut ColliderPath,
+    )>,
     mut list: Local<Colliders>,
-    mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
     list.gather(&mut colliders);
-    for entity in gone.read() {
-        complaints.forget(entity);
-    }
     for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
-        let emitter = emitter.clamped();
         if fluid.radius != emitter.particle_radius {
             fluid.radius = emitter.particle_radius;
         }
@@ -246,14 +258,16 @@ pub(super) fn simulate(
             continue;
         }
         let local_from_world = world_from_local.inverse();
-        let is_sound = local_from_world.is_finite();
-        let checked = is_sound.then_some(()).ok_or(EmitterError::Transform);
-        if let Some(error) = complaints.of(entity, checked) {
-            warn!("emitter {entity}: {error}; its particles vanish");
-        }
         particles.written = Some(world_from_local);
         let local = &mut fluid.positions;
-        if !is_sound {
+        let was_nowhere = particles.is_nowhere;
+        particles.is_nowhere = !local_from_world.is_finite();
+        if particles.is_nowhere {
+            if !was_nowhere {
+                warn!(
+                    "emitter {entity}: its `GlobalTransform` has no inverse; its particles vanish"
+                );
+            }
             particles.clear();
             local.clear();
             continue;
@@ -278,6 +292,6 @@ pub(super) fn simulate(
             colliders: &list,
             radius: emitter.particle_radius * scale,
         };
-        particles.advance(&step, &emitter, &local_from_world, local);
+        particles.advance(&step, emitter, &local_from_world, local);
     }
 }

@@ -7,16 +7,20 @@ use super::{
     runner::Simulation,
     world::{Command, Limits, Newborn},
 };
-use crate::source::emitter::{Emission, ParticleEmitter, step};
+use crate::{
+    settings::Checked,
+    source::emitter::{Emission, ParticleEmitter, step},
+};
 
 /// Sends new particles to the simulation, and the limits of those that stay.
 pub(crate) fn emit(
     mut simulation: ResMut<Simulation>,
-    settings: Res<SalvaSettings>,
+    settings: Single<&Checked<SalvaSettings>>,
     mut emitters: Query<
         (
             Entity,
             Mut<ParticleEmitter>,
+            &Checked<ParticleEmitter>,
             &GlobalTransform,
             &mut Emission,
         ),
@@ -24,7 +28,6 @@ pub(crate) fn emit(
     >,
     time: Res<Time>,
 ) {
-    let settings = settings.clamped();
     // Where the liquid moves in slow motion, so does what comes out.
     let pace = if settings.paused {
         0.0
@@ -32,8 +35,8 @@ pub(crate) fn emit(
         simulation.pace.rate
     };
     let seconds = step(&time) * pace;
-    for (entity, mut emitter, transform, mut emission) in &mut emitters {
-        let own = ParticleEmitter::take(&mut emitter, seconds);
+    for (entity, mut emitter, checked, transform, mut emission) in &mut emitters {
+        let own = ParticleEmitter::take(&mut emitter, checked, seconds);
         let mut newborn = Newborn::default();
         emission.emit(&own, transform, seconds, |birth| {
             let fallen = 0.5 * birth.age * settings.gravity;

@@ -37,7 +37,7 @@
 //!
 //! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
 //! gathered, the next steps begin on other threads, and positions interpolated between the last two
-//! finished states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies'
+//! finished states are written to [`FluidParticles`](crate::particles::FluidParticles) and to the bodies'
 //! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
 //! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
 //! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] limits how much of a
@@ -69,8 +69,8 @@
 //!   body of particles of 5 cm); at 20 m/s it does not.
 //! - Threads: it does not run on the web.
 
-mod check;
 mod emit;
+mod error;
 mod fluid;
 mod gather;
 mod pace;
@@ -86,16 +86,17 @@ mod world;
 use bevy::prelude::*;
 
 pub use self::{
-    check::SalvaError,
+    error::SalvaError,
     fluid::SalvaFluid,
     settings::{SalvaMode, SalvaSettings, SalvaStatus},
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::schedule::FluidSystems;
+use crate::{schedule::FluidSystems, settings::check, source::emitter::ParticleEmitter};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
-/// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
+/// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
+/// fluids; the simulation also runs without it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SalvaPlugin;
 
@@ -106,6 +107,11 @@ pub struct SalvaSystems;
 
 impl Plugin for SalvaPlugin {
     fn build(&self, app: &mut App) {
+        check::<SalvaFluid>(app);
+        check::<SalvaBoundary>(app);
+        check::<SalvaBody>(app);
+        check::<SalvaSettings>(app);
+        check::<ParticleEmitter>(app);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()
@@ -131,6 +137,7 @@ impl Plugin for SalvaPlugin {
                 )
                     .chain()
                     .in_set(SalvaSystems)
+                    .after(FluidSystems::Check)
                     .before(TransformSystems::Propagate),
             )
             .add_systems(

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::range::SettingRange;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// A shape in the space of its entity, scaled by the entity's transform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -16,39 +16,39 @@ pub enum SalvaShape {
     Mesh,
     /// A solid block around the origin.
     Cuboid {
-        /// Full side lengths. Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
+        /// Full side lengths. Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6))]
         size: Vec3,
     },
     /// A box around the origin with liquid inside, open at the top. Only for boundaries.
     Tank {
-        /// Full side lengths of the inside. Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
+        /// Full side lengths of the inside. Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6))]
         size: Vec3,
     },
     /// A ball around the origin. With a non-uniform scale, the largest component applies.
     Sphere {
-        /// Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
+        /// Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
         radius: f32,
     },
     /// A capsule along y around the origin. With a non-uniform scale, the largest component applies.
     Capsule {
-        /// Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
+        /// Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
         radius: f32,
-        /// Distance between the centres of its caps. Unit: m, from 0.
-        #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic().start(0.2))]
+        /// Distance between the centres of its caps. Unit: m, range 0..=1e6.
+        #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic().valid(0.0, 1e6).initial(0.2))]
         length: f32,
     },
     /// A cylinder along y around the origin. Of a non-uniform scale, the greatest component
     /// applies.
     Cylinder {
-        /// Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.1))]
+        /// Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
         radius: f32,
-        /// Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().start(0.2))]
+        /// Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.2))]
         height: f32,
     },
     /// The endless ground below the entity's plane y = 0. Only for boundaries.
@@ -65,9 +65,11 @@ pub enum SalvaShape {
 /// It always follows its transform, even while the liquid moves in slow motion: at a fifth of the
 /// speed, a plunger of 1 m/s hits the liquid at 5 m/s. Where that matters, move it in the liquid's
 /// time: by `time.delta_secs() * status.speed` of [`SalvaStatus`](super::SalvaStatus).
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform)]
+#[require(Transform, Checked<Self>)]
 pub struct SalvaBoundary {
     /// Its shape. Default: the entity's mesh.
     pub shape: SalvaShape,
@@ -105,6 +107,8 @@ impl SalvaBoundary {
     }
 }
 
+impl Settings for SalvaBoundary {}
+
 impl Default for SalvaBoundary {
     fn default() -> Self {
         Self::MESH
@@ -118,10 +122,11 @@ impl Default for SalvaBoundary {
 /// written by other code teleports it, at rest. It should be several particles across.
 ///
 /// Other changes leave its motion unchanged; inserting it again restarts it. On an entity that also
-/// has a [`SalvaBoundary`], the body takes precedence.
+/// has a [`SalvaBoundary`], the body takes precedence. Values out of range are logged once and
+/// clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform)]
+#[require(Transform, Checked<Self>)]
 pub struct SalvaBody {
     /// Its shape. Default: the convex hull of the entity's mesh.
     pub shape: SalvaShape,
@@ -157,6 +162,8 @@ impl SalvaBody {
         }
     }
 }
+
+impl Settings for SalvaBody {}
 
 impl Default for SalvaBody {
     fn default() -> Self {

@@ -2,9 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    Refractions, ScreenSpaceFluid,
     prelude::*,
     render::{Layers, SearchStatus},
+    settings::Refractions,
 };
 
 use super::*;

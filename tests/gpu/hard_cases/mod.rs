@@ -111,7 +111,7 @@ fn assert_drawn(
 }
 
 /// What the shape stage says of the only fluid.
-fn report(app: &mut App) -> &bevy_fluid::ShapedFluid {
+fn report(app: &mut App) -> &bevy_fluid::particles::ShapedFluid {
     let fluid = only::<FluidParticles>(app);
     app.world().get(fluid).unwrap()
 }

@@ -2,7 +2,7 @@
 //! in `tests/cpu/shape`, under the same numbers; here it is what becomes of them on screen.
 
 use bevy::prelude::*;
-use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers};
 
 use super::*;
 

@@ -4,7 +4,7 @@ mod equal;
 
 use crate::common::*;
 use bevy::{prelude::*, render::render_resource::Texture};
-use bevy_fluid::{SurfaceKernel, render::Layers};
+use bevy_fluid::{prelude::SurfaceKernel, render::Layers};
 
 const PERSPECTIVE: Lens = Lens::Perspective {
     fov: 0.7,

@@ -1,6 +1,9 @@
 //! What is left out is not missed: pictures with and without.
 
-use bevy_fluid::{FluidPlugin, SurfaceKernel, render::Plan};
+use bevy_fluid::{
+    prelude::{FluidPlugin, SurfaceKernel},
+    render::Plan,
+};
 use image::RgbaImage;
 
 use super::*;

@@ -1,6 +1,9 @@
 //! The length of the way through a body: from its layers, summed up over particles, and exact.
 
-use bevy_fluid::{FluidPlugin, LayerBlending, SurfaceKernel};
+use bevy_fluid::{
+    prelude::{FluidPlugin, SurfaceKernel},
+    render::LayerBlending,
+};
 
 use super::*;
 use bevy_fluid::render::Layers;

@@ -9,6 +9,7 @@ use super::{
     ParticleCollider,
     moving::{Collider, ColliderPath, Reach, overlaps},
 };
+use crate::settings::Checked;
 
 /// All colliders during a step.
 #[derive(Debug)]
@@ -40,7 +41,11 @@ impl Colliders {
     /// Collects all colliders of this step.
     pub(in crate::source::emitter) fn gather(
         &mut self,
-        colliders: &mut Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
+        colliders: &mut Query<(
+            &Checked<ParticleCollider>,
+            &GlobalTransform,
+            &mut ColliderPath,
+        )>,
     ) {
         self.list.clear();
         self.half_spaces = 0;

@@ -9,7 +9,7 @@ pub(super) use self::{
     list::Colliders,
     moving::{Collider, ColliderPath},
 };
-use crate::range::SettingRange;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
 /// follows the transform of its entity, scale included; a collider that moves or turns carries
@@ -32,7 +32,7 @@ use crate::range::SettingRange;
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform, ColliderPath)]
+#[require(Transform, ColliderPath, Checked<Self>)]
 pub struct ParticleCollider {
     /// Its shape. Default: the ground.
     pub shape: ColliderShape,
@@ -90,6 +90,8 @@ impl ParticleCollider {
         Self::DEFAULT
     }
 }
+
+impl Settings for ParticleCollider {}
 
 impl Default for ParticleCollider {
     fn default() -> Self {

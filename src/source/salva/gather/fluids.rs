@@ -5,11 +5,12 @@ use bevy::{
 };
 
 use crate::{
-    complaints::Complaints,
+    settings::Checked,
     source::emitter::ParticleEmitter,
     source::particles::FluidParticles,
     source::salva::{
         SalvaError, SalvaFluid,
+        error::Warned,
         runner::Simulation,
         world::{Command, Limits, Newborn, Substance},
     },
@@ -34,7 +35,6 @@ const SAME_RADIUS: f32 = 1e-3;
 
 impl From<&SalvaFluid> for Substance {
     fn from(fluid: &SalvaFluid) -> Self {
-        let fluid = fluid.clamped();
         Self {
             density: fluid.density,
             viscosity: fluid.viscosity,
@@ -51,31 +51,24 @@ pub(crate) fn gather_fluids(
     mut simulation: ResMut<Simulation>,
     mut fluids: Query<(
         Entity,
-        Ref<SalvaFluid>,
+        Ref<Checked<SalvaFluid>>,
         &mut FluidParticles,
-        Option<&ParticleEmitter>,
+        Option<&Checked<ParticleEmitter>>,
     )>,
     mut gone: RemovedComponents<SalvaFluid>,
     mut without_particles: RemovedComponents<FluidParticles>,
     transforms: TransformHelper,
-    mut complaints: Local<Complaints>,
-    mut settings_complaints: Local<Complaints>,
+    mut warned: Local<Warned>,
 ) {
     for entity in gone.read().chain(without_particles.read()) {
-        complaints.forget(entity);
-        settings_complaints.forget(entity);
+        warned.forget(entity);
         if simulation.fluids.remove(&entity).is_some() {
             simulation.tell(Command::RemoveFluid(entity.to_bits()));
         }
     }
     for (entity, fluid, mut particles, emitter) in &mut fluids {
-        if fluid.is_changed()
-            && let Some(error) = settings_complaints.of(entity, fluid.validate())
-        {
-            warn!("fluid {entity}: {error}; it is clamped");
-        }
         if let Some(emitter) = emitter {
-            let radius = emitter.clamped().particle_radius;
+            let radius = emitter.particle_radius;
             if particles.radius != radius {
                 particles.radius = radius;
             }
@@ -85,8 +78,8 @@ pub(crate) fn gather_fluids(
             // Particles that the emitter limited stay now.
             simulation.tell(Command::Limit(entity.to_bits(), Limits::default()));
         }
-        let checked = simulation.take_fluid(entity, &fluid, &particles, &transforms);
-        if let Some(error) = complaints.of(entity, checked) {
+        let taken = simulation.take_fluid(entity, &fluid, &particles, &transforms);
+        if let Some(error) = warned.news(entity, taken) {
             warn!("fluid {entity} is not simulated: {error}");
         }
     }
@@ -96,7 +89,7 @@ impl Simulation {
     fn take_fluid(
         &mut self,
         entity: Entity,
-        fluid: &Ref<SalvaFluid>,
+        fluid: &Ref<Checked<SalvaFluid>>,
         particles: &Mut<FluidParticles>,
         transforms: &TransformHelper,
     ) -> Result<(), SalvaError> {
@@ -105,7 +98,7 @@ impl Simulation {
         let is_written = known.is_some_and(|known| known.written == particles.last_changed());
         if is_written {
             if fluid.is_changed() {
-                self.tell(Command::Substance(id, Substance::from(&**fluid)));
+                self.tell(Command::Substance(id, Substance::from(&***fluid)));
             }
             return Ok(());
         }
@@ -132,9 +125,9 @@ impl Simulation {
         let places = particles.positions.iter();
         let newborn = Newborn {
             positions: places.map(|&place| space.transform_point3(place)).collect(),
-            velocities: vec![fluid.clamped().velocity],
+            velocities: vec![fluid.velocity],
         };
-        let told = self.tell(Command::Fluid(id, Substance::from(&**fluid), newborn));
+        let told = self.tell(Command::Fluid(id, Substance::from(&***fluid), newborn));
         let entry = FluidEntry {
             radius,
             written: particles.last_changed(),

@@ -1,22 +1,19 @@
-//! Fluid materials: refractive index, medium, roughness and thickness.
-
-mod check;
+//! The material of a fluid: refractive index, medium, roughness and thickness.
 
 use bevy::prelude::*;
 
-pub use check::MaterialError;
-pub(crate) use check::plugin;
-
-use crate::{medium::Medium, range::SettingRange};
+pub use crate::medium::Medium;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// The optical properties of a fluid.
 ///
 /// Fluids with equal materials in one view form one body: they merge on screen, unless a fluid of
 /// another material lies between them.
 ///
-/// A value out of range is logged once and clamped for drawing.
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
+#[require(Checked<Self>)]
 pub struct FluidMaterial {
     /// Refractive index relative to air. Range 0.2..=5, default 1.333 (water). Higher: rays bend
     /// more and more light is reflected. 1: no refraction or reflection, as in smoke and fire.
@@ -140,8 +137,61 @@ impl FluidMaterial {
     };
 }
 
+impl Settings for FluidMaterial {}
+
 impl Default for FluidMaterial {
     fn default() -> Self {
         Self::WATER
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_make_sense() {
+        for preset in [
+            FluidMaterial::WATER,
+            FluidMaterial::CLEAR_WATER,
+            FluidMaterial::INK,
+            FluidMaterial::MILK,
+            FluidMaterial::HONEY,
+            FluidMaterial::SMOKE,
+            FluidMaterial::FIRE,
+        ] {
+            assert_eq!(preset.validate(), Ok(()));
+            assert_eq!(preset.clamped(), preset);
+        }
+    }
+
+    #[test]
+    fn bad_fields_are_named_and_clamped() {
+        let cases: [(&str, fn(&mut FluidMaterial, f32)); 4] = [
+            ("FluidMaterial::refractive_index", |m, v| {
+                m.refractive_index = v;
+            }),
+            ("FluidMaterial::perceptual_roughness", |m, v| {
+                m.perceptual_roughness = v;
+            }),
+            ("FluidMaterial::thickness.softness", |m, v| {
+                m.thickness = Thickness::Accumulated { softness: v };
+            }),
+            ("FluidMaterial::medium.scattering_density", |m, v| {
+                m.medium.scattering_density = v;
+            }),
+        ];
+        for (field, set) in cases {
+            for value in [-1.0, f32::NAN, f32::INFINITY] {
+                let mut bad = FluidMaterial::SMOKE;
+                set(&mut bad, value);
+                let error = bad.validate().unwrap_err().to_string();
+                assert!(
+                    error.contains(field) && error.contains(&value.to_string()),
+                    "{error}"
+                );
+                assert_eq!(bad.clamped().validate(), Ok(()));
+            }
+        }
     }
 }
