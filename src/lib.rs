@@ -83,8 +83,8 @@
 //! The depth layers, the plane fit and the order of refractions come from T. Imai's master's thesis
 //! (University of Tsukuba, 2016), the kernels from Yu and Turk (2013, equations 9 to 11:
 //! [`shape`]), the medium from an article on a simple volume model (its equation: [`Medium`]).
-//! Other smoothing methods are those of Truong and Yuksel (2018, [`NarrowRange`]) and of van der
-//! Laan, Green and Sainz (2009, [`CurvatureFlow`]). Rain follows Yoshida, Dobashi and Yamamoto,
+//! The feature `published` adds the smoothing filters of Truong and Yuksel (2018), of van der Laan,
+//! Green and Sainz (2009) and of the thesis, to compare with. Rain follows Yoshida, Dobashi and Yamamoto,
 //! with the drop sizes of Marshall and Palmer (1948) and the terminal velocities of Gunn and Kinzer
 //! (1949): [`rain`]. Live simulation uses salva3d.
 //!
@@ -94,7 +94,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod diagnostics;
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 mod every_setting;
 #[cfg(feature = "inspector")]
 pub mod inspector;
@@ -117,7 +117,7 @@ pub use crate::source::salva;
 use crate::{
     diagnostics::FluidDiagnosticsPlugin,
     prelude::*,
-    settings::{CurvatureFlow, FluidDebugView, Fresnel, NarrowRange, Refractions, Search},
+    settings::{FluidDebugView, Fresnel, Refractions, Search},
 };
 pub use crate::{
     plugins::{FluidPlugin, FluidPlugins},

@@ -151,7 +151,7 @@ impl Plugin for FluidInspectorPlugin {
             .show::<crate::source::salva::SalvaBody>()
             .show::<crate::source::salva::SalvaSettings>();
         app.insert_resource(inspector)
-            .add_plugins(presets::plugin)
+            .add_plugins((presets::plugin, presets::views::plugin))
             .add_systems(Update, toggle)
             .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open));
         #[cfg(feature = "salva")]

@@ -12,7 +12,7 @@ mod shader_tests;
 mod smooth;
 mod splat;
 mod surface;
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 mod tests;
 mod thickness;
 
@@ -27,7 +27,7 @@ use bevy::{
 };
 
 pub use self::{
-    frame::{Layers, splats::GpuSplats, support::LayerBlending},
+    frame::{Layers, TextureMemory, splats::GpuSplats, support::LayerBlending},
     refract::{ExitRay, SearchStatus, decode_normal, encode_normal},
     surface::{
         Surface, ViewSurfaces,
@@ -97,9 +97,7 @@ impl Plugin for FluidRenderPlugin {
                         .chain()
                         .in_set(FluidPasses::Splat),
                     thickness::thickness.in_set(FluidPasses::Thickness),
-                    (smooth::smooth, smooth::average_normals)
-                        .chain()
-                        .in_set(FluidPasses::Smooth),
+                    smooth::smooth.in_set(FluidPasses::Smooth),
                     normals::normals.in_set(FluidPasses::Normals),
                     refract::refract.in_set(FluidPasses::Refract),
                 )
@@ -114,6 +112,13 @@ impl Plugin for FluidRenderPlugin {
                     .after(main_transmissive_pass_3d)
                     .before(main_transparent_pass_3d),
             ),
+        );
+        #[cfg(feature = "published")]
+        render_app.add_systems(
+            Core3d,
+            smooth::average_normals
+                .after(smooth::smooth)
+                .in_set(FluidPasses::Smooth),
         );
     }
 }

@@ -2,7 +2,7 @@
 
 mod literal;
 mod spawn;
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 mod tests;
 
 use std::fmt::Write;

@@ -15,7 +15,7 @@ use bevy::{
 };
 
 pub(super) use self::pipeline::CompositePipeline;
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 pub(super) use self::pipeline::{CompositeKey, CompositePart};
 use self::scene::SceneColor;
 use super::{

@@ -89,7 +89,7 @@ fn prepare(
         ensure(
             &mut scene.before,
             view.several(),
-            &gpu.device,
+            &gpu,
             "fluid_scene_before",
             uvec2(size.width, size.height),
             target.main_texture_format(),

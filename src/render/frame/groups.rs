@@ -13,7 +13,7 @@ use bevy::{
     },
 };
 
-use super::{Placeholder, Target};
+use super::{Placeholder, Target, TextureMemory};
 
 /// What it takes to make things on the GPU.
 #[derive(SystemParam)]
@@ -21,6 +21,7 @@ pub(crate) struct Gpu<'w> {
     pub(crate) device: Res<'w, RenderDevice>,
     pub(crate) queue: Res<'w, RenderQueue>,
     pub(crate) cache: Res<'w, PipelineCache>,
+    pub(super) memory: Res<'w, TextureMemory>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

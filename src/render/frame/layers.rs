@@ -2,14 +2,11 @@
 
 use bevy::{
     prelude::*,
-    render::{
-        render_resource::{Texture, TextureFormat},
-        renderer::RenderDevice,
-    },
+    render::render_resource::{Texture, TextureFormat},
 };
 
 use super::{
-    Target,
+    Gpu, Target,
     support::{FluidSupport, LAYER_FORMAT},
     targets::ensure,
     tiles::{TILE, TILE_FORMAT},
@@ -119,24 +116,6 @@ impl Layers {
         self.overdraw.as_ref().map(|it| &it.texture)
     }
 
-    /// Memory of all textures.
-    pub fn bytes(&self) -> u64 {
-        let all = [
-            &self.tiles,
-            &self.bulk,
-            &self.scratch,
-            &self.bulk_normals,
-            &self.spray,
-            &self.spray_normals,
-            &self.radiance,
-            &self.transmission,
-            &self.exits,
-            &self.thickness,
-            &self.overdraw,
-        ];
-        all.into_iter().flatten().map(Target::bytes).sum()
-    }
-
     pub(super) fn tiles(&self) -> Option<&Target> {
         self.tiles.as_ref()
     }
@@ -162,7 +141,7 @@ impl Layers {
         }
     }
 
-    fn prepare(&mut self, device: &RenderDevice, support: &FluidSupport, variant: &Variant) {
+    fn prepare(&mut self, gpu: &Gpu, support: &FluidSupport, variant: &Variant) {
         let plan = &variant.plan;
         let passes = plan.smoothing.layer_passes();
         self.splatted_to_scratch = passes % 2 == 1;
@@ -232,7 +211,7 @@ impl Layers {
             ),
             (&mut self.overdraw, counted, "fluid_overdraw", size, sum),
         ] {
-            ensure(target, wanted, device, label, size, format);
+            ensure(target, wanted, gpu, label, size, format);
         }
     }
 }
@@ -240,12 +219,12 @@ impl Layers {
 pub(super) fn prepare_layers(
     mut surfaces: Query<(&Surface, &mut Layers)>,
     support: Res<FluidSupport>,
-    device: Res<RenderDevice>,
+    gpu: Gpu,
 ) {
     for (surface, mut layers) in &mut surfaces {
         if let Some(variant) = &surface.drawn {
             layers.place(surface.rect);
-            layers.prepare(&device, &support, variant);
+            layers.prepare(&gpu, &support, variant);
         }
     }
 }

@@ -29,7 +29,6 @@ use bevy::{
     shader::load_shader_library,
 };
 
-pub use self::layers::Layers;
 pub(crate) use self::{
     groups::{Gpu, Group, Input},
     layers::{EXIT_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT, TRANSMISSION_FORMAT},
@@ -38,6 +37,7 @@ pub(crate) use self::{
     targets::{Placeholder, Target, ensure},
     uniforms::{Offset, UniformArray},
 };
+pub use self::{layers::Layers, targets::TextureMemory};
 use super::surface::{GpuSurface, Surface, SurfaceSystems, ViewSurfaces};
 
 /// The Rust twin of `FluidFrame` in `frame.wgsl`.
@@ -79,10 +79,13 @@ pub(crate) fn plugin(app: &mut App, blending: support::LayerBlending) {
     embedded_asset!(app, "tiles.wgsl");
     embedded_asset!(app, "mark_tiles.wgsl");
     embedded_asset!(app, "splat_normals.wgsl");
+    let memory = TextureMemory::default();
+    app.insert_resource(memory.clone());
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
     render_app
+        .insert_resource(memory)
         .insert_resource(support::WantedBlending(blending))
         .init_gpu_resource::<UniformArray<GpuFrame>>()
         .init_gpu_resource::<UniformArray<GpuSurface>>()
@@ -165,7 +168,7 @@ fn prepare_frames(
         ensure(
             &mut scene_depth.resolved,
             multisampled,
-            &gpu.device,
+            &gpu,
             "fluid_scene_depth",
             size,
             SCENE_DEPTH_FORMAT,

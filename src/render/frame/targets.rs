@@ -1,4 +1,9 @@
-//! Textures that passes draw to.
+//! Textures that passes draw to, and how much memory they take.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use bevy::{
     prelude::*,
@@ -11,18 +16,43 @@ use bevy::{
     },
 };
 
-use super::support::LAYER_FORMAT;
+use super::{Gpu, support::LAYER_FORMAT};
+
+/// The memory of all textures that passes of fluids draw to, of all cameras.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct TextureMemory(Arc<AtomicU64>);
+
+impl TextureMemory {
+    /// The sum in this moment.
+    pub fn bytes(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// A part of the memory, until it is dropped.
+#[derive(Debug)]
+struct Share {
+    bytes: u64,
+    memory: TextureMemory,
+}
+
+impl Drop for Share {
+    fn drop(&mut self) {
+        self.memory.0.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
 
 /// A texture that a pass draws to.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Target {
     pub(crate) texture: Texture,
     pub(crate) view: TextureView,
+    _share: Option<Share>,
 }
 
 impl Target {
-    fn new(device: &RenderDevice, label: &'static str, size: UVec2, format: TextureFormat) -> Self {
-        let texture = device.create_texture(&TextureDescriptor {
+    fn new(gpu: &Gpu, label: &'static str, size: UVec2, format: TextureFormat) -> Self {
+        let texture = gpu.device.create_texture(&TextureDescriptor {
             label: Some(label),
             size: extent(size),
             mip_level_count: 1,
@@ -35,18 +65,16 @@ impl Target {
                 | TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        Self::of(texture)
-    }
-
-    fn of(texture: Texture) -> Self {
-        let view = texture.create_view(&TextureViewDescriptor::default());
-        Self { texture, view }
-    }
-
-    /// Its memory.
-    pub(crate) fn bytes(&self) -> u64 {
-        let texel = self.texture.format().block_copy_size(None).unwrap_or(4);
-        u64::from(self.texture.width()) * u64::from(self.texture.height()) * u64::from(texel)
+        // Of all formats in use; depth is as large as a float.
+        let texel = format.block_copy_size(None).unwrap_or(4);
+        let bytes = u64::from(size.x) * u64::from(size.y) * u64::from(texel);
+        let memory = gpu.memory.clone();
+        memory.0.fetch_add(bytes, Ordering::Relaxed);
+        Self {
+            view: texture.create_view(&TextureViewDescriptor::default()),
+            texture,
+            _share: Some(Share { bytes, memory }),
+        }
     }
 }
 
@@ -62,7 +90,7 @@ fn extent(size: UVec2) -> Extent3d {
 pub(crate) fn ensure(
     target: &mut Option<Target>,
     wanted: bool,
-    device: &RenderDevice,
+    gpu: &Gpu,
     label: &'static str,
     size: UVec2,
     format: TextureFormat,
@@ -75,7 +103,7 @@ pub(crate) fn ensure(
     if !target.as_ref().is_some_and(fits) {
         // The old one is freed before.
         *target = None;
-        *target = Some(Target::new(device, label, size, format));
+        *target = Some(Target::new(gpu, label, size, format));
     }
 }
 
@@ -104,5 +132,9 @@ pub(super) fn init_placeholder(
         TextureDataOrder::default(),
         bytemuck::cast_slice(&nothing),
     );
-    commands.insert_resource(Placeholder(Target::of(texture)));
+    commands.insert_resource(Placeholder(Target {
+        view: texture.create_view(&TextureViewDescriptor::default()),
+        texture,
+        _share: None,
+    }));
 }

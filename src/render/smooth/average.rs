@@ -136,7 +136,7 @@ fn prepare_target(mut surfaces: Query<(&Surface, &Layers, &mut SplatNormals)>, g
                 .drawn
                 .as_ref()
                 .is_some_and(|it| half_taps(it).is_some()),
-            &gpu.device,
+            &gpu,
             "fluid_splat_normals",
             layers.size(),
             NORMAL_FORMAT,

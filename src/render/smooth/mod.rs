@@ -1,7 +1,10 @@
 //! Smoothing of the bulk's layers, which removes the bumps of single particles.
 
+#[cfg(feature = "published")]
 mod average;
 mod pipeline;
+#[cfg(feature = "published")]
+mod published;
 pub(crate) mod steps;
 
 use bevy::{
@@ -13,13 +16,12 @@ use bevy::{
     },
 };
 
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 pub(super) use self::average::AveragePipeline;
+#[cfg(feature = "published")]
+pub(super) use self::average::average_normals;
+pub(super) use self::pipeline::{GpuSmoothing, SmoothPipeline};
 use self::steps::{Buffer, Step};
-pub(super) use self::{
-    average::average_normals,
-    pipeline::{GpuSmoothing, SmoothPipeline},
-};
 use super::{
     frame::{
         Frame, FrameStartup, Gpu, Group, Input, Kept, Layers, Offset, Target, UniformArray,
@@ -45,6 +47,8 @@ pub(super) struct Smooth {
 
 pub(super) fn plugin(app: &mut App) {
     pipeline::load_shaders(app);
+    #[cfg(feature = "published")]
+    published::embed_shaders(app);
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
@@ -61,6 +65,7 @@ pub(super) fn plugin(app: &mut App) {
     add_stage::<SmoothPipeline>(render_app);
     let world = render_app.world_mut();
     world.register_required_components::<Surface, Smooth>();
+    #[cfg(feature = "published")]
     average::plugin(render_app);
 }
 

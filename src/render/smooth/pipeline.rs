@@ -12,6 +12,8 @@ use bevy::{
     shader::{ShaderDefVal, load_shader_library},
 };
 
+#[cfg(feature = "published")]
+use super::published::PublishedShaders;
 use super::{
     super::{
         frame::{
@@ -34,28 +36,14 @@ pub(crate) struct GpuSmoothing {
     flow_step: f32,
 }
 
-/// For methods without a bound. Unit: particle radii.
-const UNBOUND: f32 = 1e6;
-
 impl GpuSmoothing {
     /// For particles of `radius` in view units.
     pub(super) fn new(smoothing: &Smoothing, radius: f32) -> Self {
-        let mut flow_step = 0.0;
-        let (window_radii, range, bound) = match *smoothing {
-            Smoothing::None => (0.0, 1.0, UNBOUND),
-            Smoothing::PlaneFit(fit) => (radii(fit.window), fit.range, fit.bound),
-            // exp(−Δ² / 2σ²) is exp(−(Δ / √2σ)²).
-            Smoothing::Bilateral(filter) => (
-                radii(filter.window),
-                filter.range * core::f32::consts::SQRT_2,
-                UNBOUND,
-            ),
-            Smoothing::NormalAverage(average) => (radii(average.window), 1.0, UNBOUND),
-            Smoothing::NarrowRange(filter) => (radii(filter.window), filter.range, UNBOUND),
-            Smoothing::CurvatureFlow(flow) => {
-                flow_step = flow.step;
-                (0.0, flow.range, UNBOUND)
-            }
+        let (window_radii, range, bound, flow_step) = match *smoothing {
+            Smoothing::None => (0.0, 1.0, 0.0, 0.0),
+            Smoothing::PlaneFit(fit) => (radii(fit.window), fit.range, fit.bound, 0.0),
+            #[cfg(feature = "published")]
+            _ => super::published::parameters(smoothing),
         };
         Self {
             window_radii,
@@ -67,7 +55,7 @@ impl GpuSmoothing {
 }
 
 /// Half window in radii; 0 means one pixel per tap.
-fn radii(window: Window) -> f32 {
+pub(super) fn radii(window: Window) -> f32 {
     match window {
         Window::Radii(radii) => radii,
         Window::Pixels => 0.0,
@@ -82,19 +70,14 @@ pub(crate) struct SmoothPipeline {
     pub(super) slopes_layout: BindGroupLayoutDescriptor,
     plane_fit: Handle<Shader>,
     plane_fit_tls: Handle<Shader>,
-    bilateral: Handle<Shader>,
-    narrow_range: Handle<Shader>,
-    curvature_flow: Handle<Shader>,
+    #[cfg(feature = "published")]
+    published: PublishedShaders,
 }
 
 pub(super) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "window.wgsl");
     embedded_asset!(app, "plane_fit.wgsl");
     embedded_asset!(app, "plane_fit_tls.wgsl");
-    embedded_asset!(app, "bilateral.wgsl");
-    embedded_asset!(app, "narrow_range.wgsl");
-    embedded_asset!(app, "curvature_flow.wgsl");
-    embedded_asset!(app, "average_normals.wgsl");
 }
 
 pub(super) fn init_pipeline(
@@ -114,9 +97,8 @@ pub(super) fn init_pipeline(
         slopes_layout: layout("fluid_slopes_layout", slopes),
         plane_fit: load_embedded_asset!(assets.as_ref(), "plane_fit.wgsl"),
         plane_fit_tls: load_embedded_asset!(assets.as_ref(), "plane_fit_tls.wgsl"),
-        bilateral: load_embedded_asset!(assets.as_ref(), "bilateral.wgsl"),
-        narrow_range: load_embedded_asset!(assets.as_ref(), "narrow_range.wgsl"),
-        curvature_flow: load_embedded_asset!(assets.as_ref(), "curvature_flow.wgsl"),
+        #[cfg(feature = "published")]
+        published: PublishedShaders::load(&assets),
     });
 }
 
@@ -132,19 +114,22 @@ impl SpecializedRenderPipeline for SmoothPipeline {
         ]);
         shader_defs.push(ShaderDefVal::Int("HALF_TAPS".into(), step.half_taps as i32));
         let line = match step.kernel {
-            SmoothKernel::Rows | SmoothKernel::NarrowRows => Some(0),
-            SmoothKernel::Columns | SmoothKernel::NarrowColumns => Some(1),
+            SmoothKernel::Rows => Some(0),
+            SmoothKernel::Columns => Some(1),
+            #[cfg(feature = "published")]
+            SmoothKernel::NarrowRows => Some(0),
+            #[cfg(feature = "published")]
+            SmoothKernel::NarrowColumns => Some(1),
             _ => None,
         };
         shader_defs.extend(line.map(|line| ShaderDefVal::Int("LINE".into(), line)));
         let shader = match step.kernel {
             SmoothKernel::TotalLeastSquares => &self.plane_fit_tls,
-            SmoothKernel::Bilateral => &self.bilateral,
-            SmoothKernel::NarrowRows | SmoothKernel::NarrowColumns => &self.narrow_range,
-            SmoothKernel::CurvatureFlow => &self.curvature_flow,
             SmoothKernel::DeviceDepth | SmoothKernel::Rows | SmoothKernel::Columns => {
                 &self.plane_fit
             }
+            #[cfg(feature = "published")]
+            _ => self.published.of(step.kernel),
         };
         let formats: &[_] = match (step.to, step.normals) {
             (Buffer::Slopes, _) => &[EXIT_FORMAT],

@@ -9,9 +9,13 @@ pub(crate) enum SmoothKernel {
     DeviceDepth,
     Rows,
     Columns,
+    #[cfg(feature = "published")]
     Bilateral,
+    #[cfg(feature = "published")]
     NarrowRows,
+    #[cfg(feature = "published")]
     NarrowColumns,
+    #[cfg(feature = "published")]
     CurvatureFlow,
 }
 
@@ -41,8 +45,10 @@ pub(crate) struct Step {
 /// [`Buffer::Layers`].
 pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
     let (kernels, half_taps, iterations): (&[_], _, _) = match smoothing {
-        // Averaging normals leaves the layers as they are.
-        Smoothing::None | Smoothing::NormalAverage(_) => return Vec::new(),
+        Smoothing::None => return Vec::new(),
+        // It leaves the layers as they are.
+        #[cfg(feature = "published")]
+        Smoothing::NormalAverage(_) => return Vec::new(),
         Smoothing::PlaneFit(fit) => (
             match fit.form {
                 PlaneFitForm::TotalLeastSquares => &[SmoothKernel::TotalLeastSquares],
@@ -52,16 +58,19 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
             fit.half_taps,
             fit.iterations,
         ),
+        #[cfg(feature = "published")]
         Smoothing::Bilateral(filter) => (
             &[SmoothKernel::Bilateral],
             filter.half_taps,
             filter.iterations,
         ),
+        #[cfg(feature = "published")]
         Smoothing::NarrowRange(filter) => (
             &[SmoothKernel::NarrowRows, SmoothKernel::NarrowColumns],
             filter.half_taps,
             filter.iterations,
         ),
+        #[cfg(feature = "published")]
         Smoothing::CurvatureFlow(flow) => (&[SmoothKernel::CurvatureFlow], 1, flow.iterations),
     };
     let total = kernels.len() * iterations as usize;
@@ -96,7 +105,9 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{Bilateral, PlaneFit};
+    #[cfg(feature = "published")]
+    use crate::settings::Bilateral;
+    use crate::settings::PlaneFit;
 
     #[test]
     fn steps_chain_and_end_with_normals_where_the_fit_yields_them() {
@@ -118,12 +129,15 @@ mod tests {
             assert_eq!(slopes.count(), usize::from(form == PlaneFitForm::Separable));
             check(&smoothing, &steps);
         }
-        let smoothing = Smoothing::Bilateral(Bilateral::THESIS);
-        let bilateral = steps(&smoothing);
-        assert_eq!(bilateral.len(), 22);
-        assert!(bilateral.iter().all(|step| !step.normals));
-        check(&smoothing, &bilateral);
         assert!(steps(&Smoothing::None).is_empty());
+        #[cfg(feature = "published")]
+        {
+            let smoothing = Smoothing::Bilateral(Bilateral::THESIS);
+            let bilateral = steps(&smoothing);
+            assert_eq!(bilateral.len(), 22);
+            assert!(bilateral.iter().all(|step| !step.normals));
+            check(&smoothing, &bilateral);
+        }
     }
 
     fn check(smoothing: &Smoothing, steps: &[Step]) {

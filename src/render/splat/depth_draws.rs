@@ -116,14 +116,7 @@ fn prepare_textures(
             (&mut *front, "fluid_front_depth"),
             (&mut *back, "fluid_back_depth"),
         ] {
-            ensure(
-                target,
-                there,
-                &gpu.device,
-                label,
-                layers.size(),
-                DEPTH_FORMAT,
-            );
+            ensure(target, there, &gpu, label, layers.size(), DEPTH_FORMAT);
         }
         let inputs = [
             Input::texture(front.as_ref()),

@@ -16,7 +16,7 @@ use bevy::{
     },
 };
 
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 pub(super) use self::pipeline::{SplatKey, SplatOutput};
 use self::{
     depth_draws::{DepthDraws, DepthTextures},
