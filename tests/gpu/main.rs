@@ -13,3 +13,4 @@ mod rain;
 mod random_cameras;
 mod refraction;
 mod smoothing;
+mod textures;

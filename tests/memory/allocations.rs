@@ -2,12 +2,18 @@
 
 use std::{fs, path::Path, thread, time::Duration};
 
-use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, shader::Shader};
+use bevy::{
+    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
+    prelude::*,
+    render::{ExtractSchedule, Render, RenderApp, camera::CameraRenderGraph},
+    shader::Shader,
+};
 use bevy_fluid::{
     emitter::EmittedParticles,
     prelude::*,
     recording::{FluidRecording, LoadedFrames, ParticleFrame, RecordingPlayer, RecordingSettings},
 };
+use fluid_stage::{headless_app, settle};
 
 use crate::heap;
 
@@ -128,4 +134,66 @@ fn a_player_whose_frames_are_all_there() {
     run(&mut app, 1);
     let after = &app.world().get::<FluidParticles>(entity).unwrap().positions;
     assert!(*after != before, "it plays");
+}
+
+/// A camera that records no pass: those of Bevy and wgpu allocate.
+#[derive(ScheduleLabel, Clone, Debug, Hash, PartialEq, Eq)]
+struct NoPasses;
+
+/// How often a frame without passes asks for memory, at the least, with `count` fluids of a colour
+/// of their own in view.
+fn prepared(count: usize) -> usize {
+    let mut app = headless_app(UVec2::splat(64), |app| {
+        app.add_plugins(FluidPlugin::default());
+        for schedule in [
+            First.intern(),
+            PreUpdate.intern(),
+            Update.intern(),
+            PostUpdate.intern(),
+        ] {
+            app.edit_schedule(schedule, |it| {
+                it.set_executor(SingleThreadedExecutor::new());
+            });
+        }
+        let world = app.world_mut();
+        world.spawn((
+            Camera3d::default(),
+            ScreenSpaceFluid::default(),
+            CameraRenderGraph::new(NoPasses),
+        ));
+        for i in 0..count {
+            let material = FluidMaterial {
+                refractive_index: 1.3 + 0.1 * i as f32,
+                ..FluidMaterial::WATER
+            };
+            let at = vec3(0.1 * i as f32, 0.0, -2.0);
+            world.spawn((FluidParticles::new(vec![at, at + 0.1], 0.1), material));
+        }
+        let render_app = app.sub_app_mut(RenderApp);
+        render_app.init_schedule(NoPasses);
+        for schedule in [ExtractSchedule.intern(), Render.intern()] {
+            render_app.edit_schedule(schedule, |it| {
+                it.set_executor(SingleThreadedExecutor::new());
+            });
+        }
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let mut frame = || {
+        let before = heap::stats();
+        app.update();
+        let after = heap::stats();
+        after.allocations - before.allocations + after.reallocations - before.reallocations
+    };
+    (0..20).for_each(|_| {
+        frame();
+    });
+    (0..20).map(|_| frame()).min().unwrap()
+}
+
+#[test]
+fn surfaces_are_extracted_and_prepared_without_allocations() {
+    let _alone = heap::alone();
+    let without = prepared(0);
+    assert_eq!(prepared(3), without, "more than a frame without liquid");
 }

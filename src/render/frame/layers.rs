@@ -28,8 +28,6 @@ pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
 /// Texels on each side that are never drawn to, so that all that reads beyond finds nothing.
 const MARGIN: i32 = 2;
-/// Sizes are rounded up to this, which holds whole tiles.
-const ROUNDING: u32 = 4 * TILE;
 
 /// The textures of a surface, which hold the part of the view that it may cover.
 ///
@@ -134,7 +132,7 @@ impl Layers {
     fn place(&mut self, rect: URect) {
         self.origin = rect.min.as_ivec2() - MARGIN;
         let needed = rect.size() + 2 * MARGIN as u32;
-        let rounded = (needed + ROUNDING - 1) / ROUNDING * ROUNDING;
+        let rounded = (needed + TILE - 1) / TILE * TILE;
         let area = |size: UVec2| u64::from(size.x) * u64::from(size.y);
         if needed.cmpgt(self.size).any() || area(self.size) > 2 * area(rounded) {
             self.size = rounded;

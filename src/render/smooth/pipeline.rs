@@ -23,9 +23,9 @@ use super::{
         },
         surface::Variant,
     },
-    steps::{Buffer, SmoothKernel, Step, steps},
+    steps::{Buffer, SmoothKernel, Step, radii, steps},
 };
-use crate::settings::{Smoothing, Window};
+use crate::settings::Smoothing;
 
 /// `Smoothing` in `window.wgsl`.
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
@@ -51,14 +51,6 @@ impl GpuSmoothing {
             bound: bound * radius,
             flow_step,
         }
-    }
-}
-
-/// Half window in radii; 0 means one pixel per tap.
-pub(super) fn radii(window: Window) -> f32 {
-    match window {
-        Window::Radii(radii) => radii,
-        Window::Pixels => 0.0,
     }
 }
 

@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{pipeline::radii, steps::SmoothKernel};
+use super::steps::{SmoothKernel, radii};
 use crate::settings::Smoothing;
 
 /// For methods without a bound. Unit: particle radii.

@@ -1,6 +1,6 @@
-//! The passes of a smoothing, in order.
+//! The passes of a smoothing, in order, and their windows.
 
-use crate::settings::{PlaneFitForm, Smoothing};
+use crate::settings::{PlaneFitForm, Smoothing, Window};
 
 /// What one smoothing pass computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -100,6 +100,14 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
         .collect();
     steps.reverse();
     steps
+}
+
+/// Half window in radii; 0 means one pixel per tap.
+pub(super) fn radii(window: Window) -> f32 {
+    match window {
+        Window::Radii(radii) => radii,
+        Window::Pixels => 0.0,
+    }
 }
 
 #[cfg(test)]
