@@ -127,7 +127,7 @@ pub use crate::{
         ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
         ParticleCollider, ParticleEmitter,
     },
-    source::particles::{FluidParticles, ShapedFluid},
+    source::particles::{FluidParticles, ParticleSpace, ShapedFluid},
 };
 
 /// Types that most programs need.

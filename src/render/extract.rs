@@ -225,11 +225,11 @@ pub(crate) fn extract_fluids(
             Some(fluid) => fluid,
             None => new.insert(ExtractedFluid::default()),
         };
-        fluid.transform = *transform;
+        fluid.transform = particles.world_from_particles(transform);
         fluid.material = material.copied().unwrap_or_default().clamped();
         fluid.visible = visibility.get();
         fluid.local_radius = particles.radius;
-        fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);
+        fluid.radius = particles.radius * mean_scale(&fluid.transform.affine().matrix3);
         fluid
             .layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));

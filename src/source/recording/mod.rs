@@ -58,7 +58,7 @@ pub use self::{
     loader::{FluidRecordingLoader, ParticleFrameLoader},
     pattern::FramePattern,
     player::{Interpolation, PlayerError, RecordingPlayer},
-    writer::{ParticleAttributes, RecordingWriter, WrittenFrames},
+    writer::{RecordingWriter, WrittenFrames},
 };
 use crate::schedule::FluidSystems;
 
@@ -80,7 +80,6 @@ impl Plugin for RecordingPlugin {
             .register_type::<RecordingPlayer>()
             .register_type::<RecordingSettings>()
             .register_type::<RecordingWriter>()
-            .register_type::<ParticleAttributes>()
             .add_systems(
                 PostUpdate,
                 (

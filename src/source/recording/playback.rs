@@ -44,6 +44,7 @@ pub(super) fn play(
                 frames,
                 recording,
                 player.interpolation,
+                rate,
                 &mut particles,
             );
         }
@@ -143,6 +144,7 @@ fn show(
     frames: &mut LoadedFrames,
     recording: &FluidRecording,
     interpolation: Interpolation,
+    rate: f64,
     particles: &mut Mut<FluidParticles>,
 ) {
     if frames.shown == Some(moment) {
@@ -152,10 +154,14 @@ fn show(
     else {
         return;
     };
-    let positions = &mut particles.positions;
+    let particles = &mut **particles;
+    let rate = rate as f32;
     if moment.before == moment.after {
-        positions.clear();
-        positions.extend_from_slice(&before.positions);
+        particles.positions.clone_from(&before.positions);
+        particles.ids.clone_from(&before.ids);
+        particles.velocities.clear();
+        let velocities = before.velocities.iter().map(|&velocity| velocity * rate);
+        particles.velocities.extend(velocities);
     } else {
         let number = |frame: usize| f64::from(recording.frames[frame].number);
         let frames = number(moment.after) - number(moment.before);
@@ -165,8 +171,9 @@ fn show(
             share: moment.share,
             seconds: (frames / recording.rate) as f32,
             by_velocity: interpolation == Interpolation::Velocity,
+            rate,
         }
-        .write_positions(positions);
+        .write(particles);
     }
     let radius = before.radius.or(after.radius);
     frames.shown_radius = radius;

@@ -11,7 +11,9 @@ use crate::{range::SettingRange, source::particles::FluidParticles};
 const MAX_RATE: f32 = 100.0;
 const CACHES: [usize; 2] = [2, 1024];
 
-/// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity.
+/// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity: positions, and velocities
+/// and ids if the files have them. Velocities are those of playback: at half the rate, half as
+/// fast.
 ///
 /// Frames are loaded in the background, ahead of playback. A late frame does not block the program:
 /// the current one stays, and the clock goes on. The clock starts with the first frame shown.

@@ -1,7 +1,7 @@
 //! h12 to h14, h36: far from the origin, very small, very large, very far apart.
 
 use bevy::prelude::*;
-use bevy_fluid::{ScreenSpaceFluid, prelude::*};
+use bevy_fluid::{ParticleSpace, ScreenSpaceFluid, prelude::*};
 
 use super::*;
 
@@ -86,6 +86,22 @@ fn h12_a_million_metres_from_the_origin() {
             assert!((0.9..1.1).contains(&ratio), "{ratio} of the pixels");
         }
     }
+}
+
+#[test]
+fn the_transform_leaves_particles_of_the_world_where_they_are() {
+    let mut app = show_far(Vec3::ZERO);
+    let kernel = SurfaceKernel::default();
+    let wanted = ink(&mut app, particles(), kernel, Vec3::ZERO);
+    let fluid = FluidParticles {
+        space: ParticleSpace::World,
+        ..FluidParticles::new(particles(), RADIUS)
+    };
+    let elsewhere = Transform::from_xyz(1.0, -2.0, 3.0)
+        .with_rotation(Quat::from_rotation_y(1.0))
+        .with_scale(vec3(2.0, 0.5, 3.0));
+    pour(&mut app, (fluid, kernel, FluidMaterial::INK, elsewhere));
+    assert_eq!(differing(&picture(&mut app), &wanted, 0), 0);
 }
 
 /// The whole scene, camera and walls included, `scale` times as large.
