@@ -165,8 +165,8 @@ impl Default for FluidPlugin {
 
 impl Plugin for FluidPlugin {
     fn build(&self, app: &mut App) {
+        schedule::order(app);
         app.add_plugins((
-            schedule::plugin,
             source::particles::plugin,
             source::emitter::plugin,
             material::plugin,

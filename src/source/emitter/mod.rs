@@ -23,7 +23,11 @@ pub use self::{
 };
 
 pub(crate) use self::emission::Emission;
-use crate::{range::SettingRange, schedule::FluidSystems, source::particles::FluidParticles};
+use crate::{
+    range::SettingRange,
+    schedule::{FluidSystems, Movers},
+    source::particles::FluidParticles,
+};
 
 /// Emits particles from its entity, which is a fluid made of them.
 ///
@@ -285,9 +289,7 @@ pub(crate) fn plugin(app: &mut App) {
                 (check::check_emitters, particles::emit)
                     .chain()
                     .in_set(FluidSystems::Emit),
-                particles::simulate.in_set(FluidSystems::Simulate),
-            )
-                .chain()
-                .after(TransformSystems::Propagate),
+                particles::simulate.in_set(Movers::Emitters),
+            ),
         );
 }

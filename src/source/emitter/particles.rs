@@ -3,6 +3,7 @@
 use bevy::{
     math::{Affine3A, Vec3A},
     prelude::*,
+    transform::helper::TransformHelper,
 };
 use rayon::prelude::*;
 
@@ -178,21 +179,25 @@ impl Chunk<'_> {
 pub(super) fn emit(
     mut emitters: Query<
         (
+            Entity,
             Mut<ParticleEmitter>,
-            &GlobalTransform,
             &mut Emission,
             &mut EmittedParticles,
             &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
+    transforms: TransformHelper,
     time: Res<Time>,
 ) {
     let seconds = step(&time);
-    for (mut emitter, transform, mut emission, mut particles, mut fluid) in &mut emitters {
+    for (entity, mut emitter, mut emission, mut particles, mut fluid) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
+            continue;
+        };
         particles.truncate_to_columns(&mut fluid);
         let settings = ParticleEmitter::take(&mut emitter, seconds);
-        emission.emit(&settings, transform, seconds, |birth: Birth| {
+        emission.emit(&settings, &transform, seconds, |birth: Birth| {
             particles.ages.push(birth.age - seconds as f32);
             fluid.positions.push(birth.position);
             fluid.velocities.push(birth.velocity);
@@ -210,24 +215,27 @@ pub(super) fn simulate(
         (
             Entity,
             &ParticleEmitter,
-            &GlobalTransform,
             &mut EmittedParticles,
             &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
-    mut colliders: Query<(&ParticleCollider, &GlobalTransform, &mut ColliderPath)>,
+    mut colliders: Query<(Entity, &ParticleCollider, &mut ColliderPath)>,
+    transforms: TransformHelper,
     mut gone: RemovedComponents<ParticleEmitter>,
     mut list: Local<Colliders>,
     mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
-    list.gather(&mut colliders);
+    list.gather(&mut colliders, &transforms);
     for entity in gone.read() {
         complaints.forget(entity);
     }
-    for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
+    for (entity, emitter, mut particles, mut fluid) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
+            continue;
+        };
         let emitter = emitter.clamped();
         let world_from_local = transform.affine();
         let scale = world_from_local.matrix3.determinant().abs().cbrt();
@@ -237,17 +245,20 @@ pub(super) fn simulate(
         if !is_same && radius.is_finite() && radius > 0.0 {
             fluid.radius = radius;
         }
-        if particles.is_empty() || seconds == 0.0 {
-            continue;
-        }
         let local_from_world = world_from_local.inverse();
         let is_sound = local_from_world.is_finite();
         let checked = is_sound.then_some(()).ok_or(EmitterError::Transform);
         if let Some(error) = complaints.of(entity, checked) {
             warn!("emitter {entity}: {error}; its particles vanish");
         }
+        if particles.is_empty() {
+            continue;
+        }
         if !is_sound {
             particles.truncate(&mut fluid, 0);
+            continue;
+        }
+        if seconds == 0.0 {
             continue;
         }
         let step = Step {

@@ -60,7 +60,7 @@ pub use self::{
     player::{Interpolation, PlayerError, RecordingPlayer},
     writer::{RecordingWriter, WrittenFrames},
 };
-use crate::schedule::FluidSystems;
+use crate::schedule::{self, FluidSystems, Movers};
 
 /// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; it also works without
 /// that plugin, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
@@ -72,6 +72,7 @@ pub struct RecordingPlugin;
 
 impl Plugin for RecordingPlugin {
     fn build(&self, app: &mut App) {
+        schedule::order(app);
         app.init_asset::<ParticleFrame>()
             .init_asset::<FluidRecording>()
             .register_asset_reflect::<ParticleFrame>()
@@ -85,7 +86,7 @@ impl Plugin for RecordingPlugin {
                 (
                     (player::check_players, playback::play)
                         .chain()
-                        .in_set(FluidSystems::Simulate),
+                        .in_set(Movers::Recordings),
                     writer::record
                         .after(FluidSystems::Simulate)
                         .before(FluidSystems::Shape),

@@ -1,6 +1,6 @@
 //! Emitters that feed a simulated fluid.
 
-use bevy::prelude::*;
+use bevy::{prelude::*, transform::helper::TransformHelper};
 
 use super::{
     SalvaFluid, SalvaSettings,
@@ -13,15 +13,8 @@ use crate::source::emitter::{Emission, ParticleEmitter, step};
 pub(crate) fn emit(
     mut simulation: ResMut<Simulation>,
     settings: Res<SalvaSettings>,
-    mut emitters: Query<
-        (
-            Entity,
-            Mut<ParticleEmitter>,
-            &GlobalTransform,
-            &mut Emission,
-        ),
-        With<SalvaFluid>,
-    >,
+    mut emitters: Query<(Entity, Mut<ParticleEmitter>, &mut Emission), With<SalvaFluid>>,
+    transforms: TransformHelper,
     time: Res<Time>,
 ) {
     let settings = settings.clamped();
@@ -32,10 +25,13 @@ pub(crate) fn emit(
         simulation.pace.rate
     };
     let seconds = step(&time) * pace;
-    for (entity, mut emitter, transform, mut emission) in &mut emitters {
+    for (entity, mut emitter, mut emission) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
+            continue;
+        };
         let own = ParticleEmitter::take(&mut emitter, seconds);
         let mut newborn = Newborn::default();
-        emission.emit(&own, transform, seconds, |birth| {
+        emission.emit(&own, &transform, seconds, |birth| {
             let fallen = 0.5 * birth.age * settings.gravity;
             newborn
                 .positions

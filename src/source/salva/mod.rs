@@ -35,8 +35,8 @@
 //!
 //! # What happens in a frame
 //!
-//! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
-//! gathered, the next steps begin on other threads, and positions interpolated between the last two
+//! In [`FluidSystems::Simulate`](crate::FluidSystems::Simulate), finished steps are collected,
+//! changes are gathered, the next steps begin on other threads, and positions interpolated between the last two
 //! finished states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies'
 //! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
 //! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
@@ -92,20 +92,19 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::schedule::FluidSystems;
+use crate::schedule::{self, Movers};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
 /// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
+///
+/// It runs in [`FluidSystems::Simulate`](crate::FluidSystems::Simulate): anything moved or spawned
+/// before that takes part in the steps that begin there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SalvaPlugin;
 
-/// The systems of [`SalvaPlugin`], in [`PostUpdate`] before transforms are propagated: anything
-/// moved or spawned before them takes part in the steps they begin.
-#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
-pub struct SalvaSystems;
-
 impl Plugin for SalvaPlugin {
     fn build(&self, app: &mut App) {
+        schedule::order(app);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()
@@ -128,17 +127,11 @@ impl Plugin for SalvaPlugin {
                     (show::show_fluids, show::show_bodies, show::show_loads)
                         .chain()
                         .run_if(runner::goes_on),
+                    // From where nozzles are seen, into the steps of the next frame.
+                    emit::emit.run_if(runner::goes_on),
                 )
                     .chain()
-                    .in_set(SalvaSystems)
-                    .before(TransformSystems::Propagate),
-            )
-            .add_systems(
-                PostUpdate,
-                emit::emit
-                    .run_if(runner::goes_on)
-                    .in_set(FluidSystems::Emit)
-                    .after(TransformSystems::Propagate),
+                    .in_set(Movers::Simulation),
             );
     }
 }

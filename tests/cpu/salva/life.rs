@@ -113,7 +113,7 @@ fn an_emitter_feeds_the_liquid() {
     let steady = particles(&app, jet).len();
     assert!(steady < 110 && steady > 30, "{steady}");
     // On the plane they lie, not below.
-    let lowest = particles(&app, jet).iter().map(|p| p.y + 1.0);
+    let lowest = particles(&app, jet).iter().map(|p| p.y);
     let lowest = lowest.fold(f32::INFINITY, f32::min);
     assert!((0.0..2.0 * RADIUS).contains(&lowest), "{lowest}");
 }

@@ -95,7 +95,7 @@ fn assert_recorded(name: &str, source: impl Bundle) {
     written.finish();
     assert_eq!((written.written(), written.error()), (16, None));
     let deaths = moments[8].keys().filter(|id| !moments[15].contains_key(id));
-    assert!(deaths.count() > 20 && moments[15].len() > 20, "{name}");
+    assert!(deaths.count() > 5 && moments[15].len() > 5, "{name}");
 
     let mut app = app(&folder);
     let file = app
@@ -137,7 +137,7 @@ fn assert_recorded(name: &str, source: impl Bundle) {
         // The radius is the entity's too.
         assert!((found.radius - 0.02).abs() < 1e-6);
     }
-    assert!(seen > 1000, "{name}: {seen}");
+    assert!(seen > 200, "{name}: {seen}");
     assert_eq!(log::count(name), 0);
 }
 
@@ -156,11 +156,11 @@ fn a_moving_emitter_is_played_on_lines() {
     let folder = folder("moving");
     let mut app = app(&folder);
     let positions = vec![Vec3::ZERO];
-    let fluid = bevy_fluid::FluidParticles {
+    let fluid = FluidParticles {
         velocities: vec![Vec3::X],
         ids: vec![7],
         space: bevy_fluid::ParticleSpace::World,
-        ..bevy_fluid::FluidParticles::new(positions, 0.1)
+        ..FluidParticles::new(positions, 0.1)
     };
     let writer = RecordingWriter {
         rate: 10.0,

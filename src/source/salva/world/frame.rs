@@ -57,8 +57,8 @@ pub(crate) fn blend<'a>(
                 while from.ids.get(next).is_some_and(|before| before < id) {
                     next += 1;
                 }
-                (from.ids.get(next) == Some(id))
-                    .then_some((from.positions[next], from.velocities[next]))
+                from.ids.get(next).filter(|before| *before == id)?;
+                Some((*from.positions.get(next)?, *from.velocities.get(next)?))
             });
             start.map_or((place, velocity), |(from, before)| {
                 (from.lerp(place, share), before.lerp(velocity, share))
