@@ -124,10 +124,11 @@ pub use crate::{
     },
     shape::SurfaceKernel,
     source::emitter::{
-        ColliderShape, EmittedParticles, EmitterBounds, EmitterError, ExternalMotion,
-        ParticleCollider, ParticleEmitter,
+        EmittedParticles, EmitterBounds, EmitterError, ExternalMotion, ParticleCollider,
+        ParticleEmitter,
     },
     source::particles::{FluidParticles, ParticleSpace, ShapedFluid},
+    source::solid::SolidShape,
 };
 
 /// Types that most programs need.

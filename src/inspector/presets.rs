@@ -104,6 +104,6 @@ pub(super) mod salva {
 
     presets! {
         SalvaFluid: WATER, HONEY;
-        SalvaBoundary: MESH, PLANE;
+        SalvaBoundary: MESH, GROUND;
     }
 }

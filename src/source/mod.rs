@@ -6,3 +6,4 @@ pub(crate) mod particles;
 pub mod recording;
 #[cfg(feature = "salva")]
 pub mod salva;
+pub(crate) mod solid;

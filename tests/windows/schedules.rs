@@ -1,6 +1,8 @@
 //! None of our systems leaves it to chance whether it runs before or after another that it shares
 //! data with, be it ours or Bevy's.
 
+use std::collections::HashMap;
+
 use bevy::{
     ecs::{intern::Interned, schedule::ScheduleLabel},
     prelude::*,
@@ -15,10 +17,18 @@ fn ambiguities(world: &World) -> Vec<String> {
     let schedules = world.resource::<Schedules>();
     let mut found = Vec::new();
     for (label, schedule) in schedules.iter() {
-        let graph = schedule.graph();
-        let conflicts = graph.conflicting_systems();
-        for (a, b, shared) in conflicts.to_string(graph, world.components()) {
-            if [&a, &b].iter().any(|name| name.contains("bevy_fluid")) {
+        // It has not run yet.
+        let Ok(systems) = schedule.systems() else {
+            continue;
+        };
+        let names: HashMap<_, _> = systems
+            .map(|(key, system)| (key, system.name().to_string()))
+            .collect();
+        for (a, b, shared) in schedule.graph().conflicting_systems().iter() {
+            let (a, b) = (&names[a], &names[b]);
+            if [a, b].iter().any(|name| name.contains("bevy_fluid")) {
+                let shared = shared.iter().map(|&id| world.components().get_name(id));
+                let shared: Vec<_> = shared.flatten().collect();
                 found.push(format!("{label:?}: {a} and {b} share {shared:?}"));
             }
         }

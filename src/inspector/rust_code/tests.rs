@@ -2,9 +2,9 @@ use core::any::TypeId;
 
 use super::*;
 use crate::{
-    Bilateral, ColliderShape, EmitterBounds, FluidDebugView, FluidMaterial, FluidParticles,
-    Fresnel, Medium, ParticleCollider, ParticleEmitter, PlaneFit, PlaneFitForm, Rain, Refractions,
-    ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Thickness, Window,
+    Bilateral, EmitterBounds, FluidDebugView, FluidMaterial, FluidParticles, Fresnel, Medium,
+    ParticleCollider, ParticleEmitter, PlaneFit, PlaneFitForm, Rain, Refractions, ScreenSpaceFluid,
+    Search, Smoothing, SolidShape, SurfaceKernel, Thickness, Window,
     rain::{Exposure, RainStreaks},
 };
 
@@ -304,7 +304,7 @@ fn the_code_of_a_scene_spawns_it() {
             },
         ));
         commands.spawn((ParticleCollider {
-            shape: ColliderShape::Sphere { radius: 0.5 },
+            shape: SolidShape::Sphere { radius: 0.5 },
             ..default()
         },));
     }

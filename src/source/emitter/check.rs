@@ -5,10 +5,11 @@ use core::f32::consts::PI;
 use bevy::prelude::*;
 use thiserror::Error;
 
-use super::{ColliderShape, Emission, EmitterBounds, ParticleCollider, ParticleEmitter};
+use super::{Emission, EmitterBounds, ParticleCollider, ParticleEmitter};
 use crate::{
     complaints::{AboutField, Complaints},
     limits::Limited,
+    source::solid::SolidShape,
 };
 
 /// More particles than this are of no use, and would take gigabytes.
@@ -157,13 +158,13 @@ impl ParticleCollider {
         );
         let friction = Limited::new("friction", &mut self.friction, [0.0, 1e3], absent.friction);
         match &mut self.shape {
-            ColliderShape::Ground => f(&mut [restitution, friction]),
-            ColliderShape::Sphere { radius } => f(&mut [
+            SolidShape::Ground => f(&mut [restitution, friction]),
+            SolidShape::Sphere { radius } => f(&mut [
                 restitution,
                 friction,
                 Limited::new("shape.radius", radius, LENGTHS, 0.0),
             ]),
-            ColliderShape::Cuboid { half_size } => {
+            SolidShape::Cuboid { half_size } => {
                 let [x, y, z] = half_size.as_mut();
                 f(&mut [
                     restitution,
@@ -173,7 +174,7 @@ impl ParticleCollider {
                     Limited::new("shape.half_size.z", z, LENGTHS, 0.0),
                 ])
             }
-            ColliderShape::Capsule {
+            SolidShape::Capsule {
                 radius,
                 half_length,
             } => f(&mut [
@@ -181,6 +182,15 @@ impl ParticleCollider {
                 friction,
                 Limited::new("shape.radius", radius, LENGTHS, 0.0),
                 Limited::new("shape.half_length", half_length, LENGTHS, 0.0),
+            ]),
+            SolidShape::Cylinder {
+                radius,
+                half_height,
+            } => f(&mut [
+                restitution,
+                friction,
+                Limited::new("shape.radius", radius, LENGTHS, 0.0),
+                Limited::new("shape.half_height", half_height, LENGTHS, 0.0),
             ]),
         }
     }

@@ -16,11 +16,7 @@ use core::f32::consts::PI;
 
 use bevy::prelude::*;
 
-pub use self::{
-    check::EmitterError,
-    colliders::{ColliderShape, ParticleCollider},
-    particles::EmittedParticles,
-};
+pub use self::{check::EmitterError, colliders::ParticleCollider, particles::EmittedParticles};
 
 pub(crate) use self::emission::Emission;
 use crate::{

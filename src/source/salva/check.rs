@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use thiserror::Error;
 
 use super::{SalvaBody, SalvaBoundary, SalvaFluid, SalvaSettings, SalvaShape};
-use crate::{complaints::AboutField, limits::Limited};
+use crate::{complaints::AboutField, limits::Limited, source::solid::SolidShape};
 
 const MAX_SUBSTEPS: u32 = 16;
 const MAX_STEPS: u32 = 64;
@@ -53,7 +53,7 @@ pub enum SalvaError {
     #[error("`SalvaShape` {0:?} (scaled) is invalid: sizes must be finite and above 0")]
     Shape(SalvaShape),
     /// A body's shape is hollow or endless.
-    #[error("a body cannot be a `SalvaShape::Tank` or a `Plane`")]
+    #[error("a body cannot be a `SalvaShape::Tank` or the `SolidShape::Ground`")]
     BodyShape,
     /// The transform is not finite.
     #[error("its transform is not finite")]
@@ -178,7 +178,10 @@ impl SalvaBody {
     /// # Errors
     /// The first field that is out of its range, by name and value.
     pub fn validate(&self) -> Result<(), SalvaError> {
-        if matches!(self.shape, SalvaShape::Tank { .. } | SalvaShape::Plane) {
+        if matches!(
+            self.shape,
+            SalvaShape::Tank { .. } | SalvaShape::Solid(SolidShape::Ground)
+        ) {
             return Err(SalvaError::BodyShape);
         }
         let mut own = *self;
@@ -287,7 +290,7 @@ mod tests {
             assert!(boundary.validate().is_err());
             assert_eq!(boundary.clamped().validate(), Ok(()));
         }
-        let endless = SalvaBody::new(SalvaShape::Plane, 500.0);
+        let endless = SalvaBody::new(SolidShape::Ground, 500.0);
         assert_eq!(endless.validate(), Err(SalvaError::BodyShape));
     }
 

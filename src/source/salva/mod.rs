@@ -19,10 +19,10 @@
 //!         SalvaFluid::WATER,
 //!     ));
 //!     // A crate that will float.
-//!     let size = Vec3::splat(0.3);
+//!     let cube = Cuboid::from_length(0.3);
 //!     commands.spawn((
-//!         SalvaBody::new(SalvaShape::Cuboid { size }, 400.0),
-//!         Mesh3d(meshes.add(Cuboid::from_size(size))),
+//!         SalvaBody::new(cube, 400.0),
+//!         Mesh3d(meshes.add(cube)),
 //!         Transform::from_xyz(0.5, 0.8, 0.0),
 //!     ));
 //! }
