@@ -39,15 +39,19 @@ mod window;
 use std::any::TypeId;
 
 use bevy::{prelude::*, reflect::GetTypeRegistration};
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, input::EguiWantsInput};
+use bevy_egui::{
+    EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass,
+    input::EguiWantsInput,
+};
 
 pub use presets::{Presets, ReflectPresets};
 pub use rust_code::{rust_code, spawn_code};
 
 use crate::{
-    FluidDiagnosticsPlugin, FluidMaterial, FluidParticles, ParticleCollider, ParticleEmitter, Rain,
-    ScreenSpaceFluid, SurfaceKernel,
+    FluidDiagnosticsPlugin, FluidMaterial, FluidParticles, FluidSystems, ParticleCollider,
+    ParticleEmitter, Rain, ScreenSpaceFluid, SurfaceKernel,
     rain::{RainShelter, RainStreaks},
+    schedule,
 };
 
 /// Adds the inspector: see [`inspector`](crate::inspector). It adds [`EguiPlugin`] and
@@ -149,7 +153,13 @@ impl Plugin for FluidInspectorPlugin {
         app.insert_resource(inspector)
             .add_plugins(presets::plugin)
             .add_systems(Update, toggle)
-            .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open));
+            .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open))
+            // What is set in the window takes effect in the same frame.
+            .configure_sets(
+                PostUpdate,
+                EguiPostUpdateSet::EndPass.before(FluidSystems::Emit),
+            );
+        schedule::order(app);
         #[cfg(feature = "salva")]
         app.add_plugins(presets::salva::plugin);
     }

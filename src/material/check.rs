@@ -7,6 +7,7 @@ use super::{FluidMaterial, Thickness};
 use crate::{
     complaints::{AboutField, Complaints},
     medium::MediumError,
+    schedule::FluidSystems,
 };
 
 const REFRACTIVE_INDICES: [f32; 2] = [0.2, 5.0];
@@ -131,7 +132,7 @@ fn check_materials(
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(PostUpdate, check_materials);
+    app.add_systems(PostUpdate, check_materials.after(FluidSystems::Simulate));
 }
 
 #[cfg(test)]

@@ -83,7 +83,9 @@ mod solids;
 mod tests;
 mod world;
 
-use bevy::prelude::*;
+use bevy::{
+    asset::AssetEventSystems, mesh::mark_3d_meshes_as_changed_if_their_assets_changed, prelude::*,
+};
 
 pub use self::{
     check::SalvaError,
@@ -131,7 +133,10 @@ impl Plugin for SalvaPlugin {
                     emit::emit.run_if(runner::goes_on),
                 )
                     .chain()
-                    .in_set(Movers::Simulation),
+                    .in_set(Movers::Simulation)
+                    // Meshes that have changed are told of there.
+                    .after(AssetEventSystems)
+                    .after(mark_3d_meshes_as_changed_if_their_assets_changed),
             );
     }
 }
