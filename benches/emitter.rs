@@ -8,7 +8,7 @@
 use std::time::{Duration, Instant};
 
 use bevy::{prelude::*, shader::Shader, time::TimeUpdateStrategy};
-use bevy_fluid::{EmittedParticles, prelude::*};
+use bevy_fluid::{emitter::EmittedParticles, prelude::*};
 
 const STEP: Duration = Duration::from_micros(16_667);
 /// How long particles live. Unit: s.
@@ -43,8 +43,8 @@ fn emitter(count: u32) -> ParticleEmitter {
     ParticleEmitter {
         lifetime: LIFETIME,
         capacity: count,
-        nozzle: 0.3,
-        spread: 0.4,
+        nozzle_radius: 0.3,
+        cone_half_angle: 0.4,
         drag: 0.1,
         particle_radius: 0.01,
         ..ParticleEmitter::fountain(count as f32 / LIFETIME, 5.0)
@@ -66,7 +66,7 @@ fn at_rest(world: &mut World, count: u32) {
         ParticleEmitter {
             rate: 0.0,
             speed: 0.0,
-            queued: count,
+            pending_burst: count,
             lifetime: f32::INFINITY,
             ..emitter(count)
         },

@@ -45,8 +45,8 @@ fn water(mut commands: Commands) {
     commands.spawn((
         ParticleEmitter {
             particle_radius: COLUMN,
-            nozzle: 0.03,
-            spread: 0.05,
+            nozzle_radius: 0.03,
+            cone_half_angle: 0.05,
             jitter: 0.2,
             lifetime: 1.5,
             ..ParticleEmitter::fountain(16_000.0, 4.0)
@@ -55,8 +55,8 @@ fn water(mut commands: Commands) {
     ));
     let jet = ParticleEmitter {
         particle_radius: DROP,
-        nozzle: 0.016,
-        spread: 0.01,
+        nozzle_radius: 0.016,
+        cone_half_angle: 0.01,
         lifetime: 1.0,
         ..ParticleEmitter::jet(4000.0, 3.7)
     };

@@ -6,7 +6,10 @@
 //! Needs `--features inspector`.
 
 use bevy::prelude::*;
-use bevy_fluid::{FluidInspectorPlugin, inspector::inspector_wants_pointer, prelude::*};
+use bevy_fluid::{
+    inspector::{FluidInspectorPlugin, inspector_wants_pointer},
+    prelude::*,
+};
 use fluid_stage::{
     StagePlugins,
     scenery::{PanOrbitCameraSystemSet, Scenery, orbit_camera},

@@ -4,7 +4,7 @@
 //! Turn the camera with the mouse: the order follows. `--out FILE.png` writes a picture instead.
 
 use bevy::prelude::*;
-use bevy_fluid::{SurfaceKernel, prelude::*};
+use bevy_fluid::prelude::*;
 use fluid_stage::{
     StagePlugins,
     scenery::{Scenery, orbit_camera},

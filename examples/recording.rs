@@ -121,7 +121,7 @@ fn run(mut args: Args) -> anyhow::Result<ExitCode> {
     }
     let (size, time, frames) = (args.size, args.time, args.frames);
     let configure = move |app: &mut App| {
-        app.add_plugins(FluidPlugin::default())
+        app.add_plugins(FluidPlugins)
             .insert_resource(args)
             .add_systems(Startup, open)
             .add_systems(Update, (build_scene, control));

@@ -4,7 +4,7 @@
 //!
 //! ```no_run
 //! use bevy::{diagnostic::LogDiagnosticsPlugin, prelude::*};
-//! use bevy_fluid::{FluidDiagnosticsPlugin, prelude::*};
+//! use bevy_fluid::{diagnostics::FluidDiagnosticsPlugin, prelude::*};
 //!
 //! App::new()
 //!     .add_plugins((
@@ -22,6 +22,7 @@
 //! | `fluid/bulk`, `fluid/interior`, `fluid/spray` | | particles of each class |
 //! | `fluid/dropped` | | particles whose position is not finite |
 //! | `fluid/shape/grid`, `…/classify`, `…/anisotropy`, `…/total` | ms | CPU time of the frame's shaping; 0 where nothing was shaped |
+//! | `fluid/texture_memory` | MiB | textures that the passes of fluids draw to, of all cameras |
 //! | `fluid/emitted` | | particles of emitters, without those that something else moves |
 //! | `fluid/recording/cached` | | frames in the players' memory, loading ones included; feature `recordings` |
 //! | `fluid/salva/particles` | | particles simulated live; feature `salva`, with `SalvaPlugin` |
@@ -42,7 +43,10 @@ use bevy::{
 
 #[cfg(feature = "recordings")]
 use crate::source::recording::LoadedFrames;
-use crate::{EmittedParticles, FluidSystems, ShapedFluid, shape::ShapeTimes};
+use crate::{
+    FluidSystems, emitter::EmittedParticles, particles::ShapedFluid, render::TextureMemory,
+    shape::ShapeTimes,
+};
 
 /// Particles of all fluids, dropped ones included.
 pub const PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/particles");
@@ -62,6 +66,8 @@ pub const SHAPE_CLASSIFY: DiagnosticPath = DiagnosticPath::const_new("fluid/shap
 pub const SHAPE_ANISOTROPY: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/anisotropy");
 /// CPU time of all of the shaping. Unit: ms.
 pub const SHAPE_TOTAL: DiagnosticPath = DiagnosticPath::const_new("fluid/shape/total");
+/// Memory of the textures that the passes of fluids draw to, of all cameras. Unit: MiB.
+pub const TEXTURE_MEMORY: DiagnosticPath = DiagnosticPath::const_new("fluid/texture_memory");
 /// Particles of emitters, without those that something else moves.
 pub const EMITTED: DiagnosticPath = DiagnosticPath::const_new("fluid/emitted");
 /// Frames in the players' memory, loading ones included.
@@ -75,15 +81,7 @@ pub const SALVA_PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/sal
 pub const SALVA_STEP: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/step");
 
 /// Names of the passes' time spans, in the order of the passes.
-pub const PASSES: [&str; 7] = [
-    "fluid_scene_depth",
-    "fluid_splat",
-    "fluid_thickness",
-    "fluid_smooth",
-    "fluid_normals",
-    "fluid_refract",
-    "fluid_composite",
-];
+pub const PASSES: [&str; 7] = crate::render::SPANS;
 
 /// Passes that rain uses: the copy of the scene's depth, for rain only, and Bevy's own pass for
 /// transparent objects, in which rain is drawn.
@@ -115,8 +113,13 @@ impl Plugin for FluidDiagnosticsPlugin {
         for path in [SHAPE_GRID, SHAPE_CLASSIFY, SHAPE_ANISOTROPY, SHAPE_TOTAL] {
             app.register_diagnostic(time(path));
         }
+        let memory = Diagnostic::new(TEXTURE_MEMORY).with_smoothing_factor(0.0);
+        app.register_diagnostic(memory.with_suffix(" MiB"));
         let measured = FluidSystems::Shape;
-        app.add_systems(PostUpdate, (measure, measure_emitters).after(measured));
+        app.add_systems(
+            PostUpdate,
+            (measure, measure_emitters, measure_memory).after(measured),
+        );
         #[cfg(feature = "recordings")]
         app.register_diagnostic(count(CACHED_FRAMES))
             .add_systems(PostUpdate, measure_recordings.after(measured));
@@ -133,6 +136,14 @@ fn count(path: DiagnosticPath) -> Diagnostic {
 
 fn time(path: DiagnosticPath) -> Diagnostic {
     Diagnostic::new(path).with_suffix(" ms")
+}
+
+fn measure_memory(memory: Option<Res<TextureMemory>>, mut diagnostics: Diagnostics) {
+    if let Some(memory) = memory {
+        diagnostics.add_measurement(&TEXTURE_MEMORY, || {
+            memory.bytes() as f64 / f64::from(1 << 20)
+        });
+    }
 }
 
 fn measure_emitters(emitters: Query<&EmittedParticles>, mut diagnostics: Diagnostics) {

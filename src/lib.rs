@@ -1,7 +1,8 @@
 //! Particle liquids for Bevy, drawn in screen space with up to four refractions, and rain.
 //!
 //! A fluid is an entity with [`FluidParticles`] and a [`FluidMaterial`]; a camera with
-//! [`ScreenSpaceFluid`] draws it. Everything else has defaults.
+//! [`ScreenSpaceFluid`] draws it. Everything else has defaults. The [`prelude`] has what most
+//! programs name, and the modules have the rest.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -36,14 +37,20 @@
 //!
 //! Work that a scene does not need is skipped: see [`render::plan`].
 //!
+//! [`FluidPlugin`] does all of this. [`FluidPlugins`] adds rain and, with their features, recordings
+//! and live simulation.
+//!
+//! Settings out of range are logged once and clamped: see [`Settings`].
+//!
 //! # Where particles come from
 //!
 //! - Your own code writes them into [`FluidParticles`].
 //! - A [`ParticleEmitter`] emits them: particles leave its nozzle, fly, bounce off every
 //!   [`ParticleCollider`] and vanish, in [`FluidSystems::Emit`] and [`FluidSystems::Simulate`].
 //!   They do not push each other.
-//! - With the feature `recordings`, a `RecordingPlayer` plays back numbered particle files, loaded
-//!   in the background, and a `RecordingWriter` writes such files: see the module `recording`.
+//! - With the feature `recordings` and `RecordingPlugin`, a `RecordingPlayer` plays back numbered
+//!   particle files, loaded in the background, and a `RecordingWriter` writes such files: see the
+//!   module `recording`.
 //! - With the feature `salva`, `SalvaPlugin` simulates them live, among boundaries and floating
 //!   bodies: see the module `salva`.
 //!
@@ -76,8 +83,8 @@
 //! The depth layers, the plane fit and the order of refractions come from T. Imai's master's thesis
 //! (University of Tsukuba, 2016), the kernels from Yu and Turk (2013, equations 9 to 11:
 //! [`shape`]), the medium from an article on a simple volume model (its equation: [`Medium`]).
-//! Other smoothing methods are those of Truong and Yuksel (2018, [`NarrowRange`]) and of van der
-//! Laan, Green and Sainz (2009, [`CurvatureFlow`]). Rain follows Yoshida, Dobashi and Yamamoto,
+//! The feature `published` adds the smoothing filters of Truong and Yuksel (2018), of van der Laan,
+//! Green and Sainz (2009) and of the thesis, to compare with. Rain follows Yoshida, Dobashi and Yamamoto,
 //! with the drop sizes of Marshall and Palmer (1948) and the terminal velocities of Gunn and Kinzer
 //! (1949): [`rain`]. Live simulation uses salva3d.
 //!
@@ -86,104 +93,62 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-mod complaints;
 pub mod diagnostics;
+#[cfg(all(test, feature = "published"))]
+mod every_setting;
 #[cfg(feature = "inspector")]
 pub mod inspector;
-mod limits;
-mod material;
+pub mod material;
 mod medium;
+mod plugins;
 pub mod rain;
 mod random;
-mod range;
 pub mod render;
 mod schedule;
-mod settings;
+pub mod settings;
 pub mod shape;
 mod source;
 
-use bevy::prelude::*;
-
-#[cfg(feature = "inspector")]
-pub use crate::inspector::FluidInspectorPlugin;
 #[cfg(feature = "recordings")]
 pub use crate::source::recording;
 #[cfg(feature = "salva")]
 pub use crate::source::salva;
-pub use crate::{
+#[cfg(doc)]
+use crate::{
     diagnostics::FluidDiagnosticsPlugin,
-    material::{FluidMaterial, MaterialError, Thickness},
-    medium::{Medium, MediumError},
-    rain::{Rain, RainPlugin},
-    range::SettingRange,
-    render::LayerBlending,
+    prelude::*,
+    settings::{FluidDebugView, Fresnel, Refractions, Search},
+};
+pub use crate::{
+    plugins::{FluidPlugin, FluidPlugins},
     schedule::FluidSystems,
-    settings::{
-        Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NarrowRange, NormalAverage, PlaneFit,
-        PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, Window,
-    },
-    shape::SurfaceKernel,
-    source::emitter::{
-        EmittedParticles, EmitterBounds, EmitterError, ExternalMotion, ParticleCollider,
-        ParticleEmitter,
-    },
-    source::particles::{FluidParticles, ParticleSpace, ShapedFluid},
-    source::solid::SolidShape,
+    source::{emitter, particles, solid},
 };
 
-/// Types that most programs need.
+/// What most programs name.
 pub mod prelude {
+    #[cfg(feature = "recordings")]
+    pub use crate::recording::{FluidRecording, RecordingPlayer, RecordingPlugin, RecordingWriter};
     #[cfg(feature = "salva")]
-    pub use crate::source::salva::{
+    pub use crate::salva::{
         SalvaBody, SalvaBoundary, SalvaFluid, SalvaMode, SalvaPlugin, SalvaSettings, SalvaShape,
         SalvaStatus,
     };
     pub use crate::{
-        FluidMaterial, FluidParticles, FluidPlugin, FluidSystems, Medium, ParticleCollider,
-        ParticleEmitter, Rain, RainPlugin, ScreenSpaceFluid, SurfaceKernel, Thickness,
+        FluidPlugin, FluidPlugins, FluidSystems,
+        emitter::{ParticleCollider, ParticleEmitter},
+        material::{FluidMaterial, Medium, Thickness},
+        particles::{FluidParticles, ParticleSpace},
+        rain::{Rain, RainPlugin},
+        settings::{ScreenSpaceFluid, Settings},
+        shape::SurfaceKernel,
     };
 }
 
-/// Shapes and draws particle fluids.
-#[derive(Clone, Copy, Debug)]
-pub struct FluidPlugin {
-    /// How the depth layers are drawn; leave it at its default unless you test adapters.
-    pub layer_blending: LayerBlending,
-    /// Whether work that a material does not need is skipped (see [`render::plan`]): the search in
-    /// a fluid of refractive index 1, everything behind an opaque fluid, the terms that a medium
-    /// lacks. Default: true; leave it there unless you test that skipping changes nothing.
-    pub shortcuts: bool,
-}
-
-impl Default for FluidPlugin {
-    fn default() -> Self {
-        Self {
-            layer_blending: LayerBlending::Auto,
-            shortcuts: true,
-        }
-    }
-}
-
-impl Plugin for FluidPlugin {
-    fn build(&self, app: &mut App) {
-        schedule::order(app);
-        app.add_plugins((
-            source::particles::plugin,
-            source::emitter::plugin,
-            material::plugin,
-            render::FluidRenderPlugin {
-                layer_blending: self.layer_blending,
-                shortcuts: self.shortcuts,
-            },
-        ))
-        .register_type::<FluidParticles>()
-        .register_type::<FluidMaterial>()
-        .register_type::<SurfaceKernel>()
-        .register_type::<ScreenSpaceFluid>()
-        .register_type::<FluidDebugView>();
-        #[cfg(feature = "recordings")]
-        app.add_plugins(recording::RecordingPlugin);
-    }
+/// For this crate's own tests; it may change in any version.
+#[doc(hidden)]
+pub mod test_hooks {
+    pub use crate::{rain::RainQuads, settings::Checked};
 }
 
 /// The code of README and docs, compiled as doc tests with the features it needs.

@@ -4,17 +4,20 @@ use bevy::{app::AnimationSystems, prelude::*};
 
 /// The stages of particles within a frame, in this order, in [`PostUpdate`].
 ///
-/// Changes made to [`FluidParticles`](crate::FluidParticles) anywhere before
+/// Changes made to [`FluidParticles`](crate::particles::FluidParticles) anywhere before
 /// [`FluidSystems::Shape`] are on screen in the same frame.
 ///
 /// Particles are emitted and moved after animation (`AnimationSystems`) and before transforms are
 /// propagated (`TransformSystems::Propagate`): so a floating body, and what hangs on it, is seen
 /// where the simulation has moved it in this frame. The places of nozzles, colliders and boundaries
 /// are computed from their `Transform`s and those of their parents, and so are those of this frame
-/// too; what moves them in [`PostUpdate`] belongs before [`FluidSystems::Emit`]. Only a nozzle on a
+/// too; what moves them in [`PostUpdate`] belongs before [`FluidSystems::Emit`], and what changes
+/// settings before [`FluidSystems::Check`]. Only a nozzle on a
 /// floating body follows it a frame behind.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub enum FluidSystems {
+    /// Settings out of range are logged and clamped.
+    Check,
     /// Emitters emit, except into a simulation.
     Emit,
     /// Particles and floating bodies move: recordings first, then the live simulation, which takes
@@ -39,7 +42,8 @@ pub(crate) fn order(app: &mut App) {
         PostUpdate,
         (
             (
-                FluidSystems::Emit.after(AnimationSystems),
+                FluidSystems::Check.after(AnimationSystems),
+                FluidSystems::Emit,
                 FluidSystems::Simulate.before(TransformSystems::Propagate),
                 FluidSystems::Shape,
             )

@@ -14,7 +14,7 @@ use bevy::{
 use bevy_fluid::{
     prelude::*,
     rain::{
-        DragLaw, Exposure, RainMethod, RainStreaks,
+        DragLaw, Exposure, RainMethod, RainStreakSettings,
         drops::extinction,
         streaks::{StreakInput, bake},
     },
@@ -142,7 +142,7 @@ impl Rainy {
             app.add_plugins(RainPlugin {
                 synchronous_bake: true,
             })
-            .insert_resource(RainStreaks {
+            .insert_resource(RainStreakSettings {
                 exposure: Exposure::Seconds(exposure),
                 ..default()
             })

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 use bevy_fluid::{
     prelude::*,
-    rain::{Exposure, RainMethod, RainStreaks},
+    rain::{Exposure, RainMethod, RainStreakSettings},
 };
 use clap::{Parser, ValueEnum};
 use fluid_stage::{StagePlugins, VIEW_SIZE, parse_args, scenery::Scenery};
@@ -105,7 +105,7 @@ fn main() -> AppExit {
     };
     App::new()
         .add_plugins((stage, FluidPlugin::default(), rain))
-        .insert_resource(RainStreaks {
+        .insert_resource(RainStreakSettings {
             exposure: args.exposure.map_or_else(default, Exposure::Seconds),
             ..default()
         })

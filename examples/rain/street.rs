@@ -302,8 +302,8 @@ fn fountain(scenery: &mut Scenery) {
     scenery.commands.spawn((
         ParticleEmitter {
             particle_radius: DROP,
-            nozzle: 0.02,
-            spread: 0.09,
+            nozzle_radius: 0.02,
+            cone_half_angle: 0.09,
             jitter: 0.25,
             lifetime: 0.7,
             ..ParticleEmitter::fountain(5000.0, 3.4)

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid,
-    Search, Smoothing,
+    prelude::ScreenSpaceFluid,
+    settings::{
+        Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, Search, Smoothing,
+    },
 };
 use clap::{
     Parser, ValueEnum,

@@ -5,7 +5,7 @@ use bevy::{
     math::bounding::{Aabb3d, BoundingVolume},
     prelude::*,
 };
-use bevy_fluid::{FluidDebugView, ScreenSpaceFluid, SurfaceKernel, prelude::*};
+use bevy_fluid::{prelude::*, settings::FluidDebugView};
 use fluid_stage::scenery::{Scenery, frame_camera, orbit_camera};
 
 use crate::args::Args;

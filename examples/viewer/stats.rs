@@ -4,7 +4,9 @@ use std::{path::Path, time::Duration};
 
 use anyhow::{Context, anyhow};
 use bevy::{diagnostic::DiagnosticsStore, prelude::*, render::RenderApp};
-use bevy_fluid::{FluidParticles, ShapedFluid, render::ViewBodies, shape::ShapeTimes};
+use bevy_fluid::{
+    particles::ShapedFluid, prelude::FluidParticles, render::Layers, shape::ShapeTimes,
+};
 use fluid_stage::{Stage, adapter_name, median_gpu_ms, read_texture};
 use serde::Serialize;
 
@@ -128,15 +130,12 @@ pub(crate) fn gather(app: &App, times: &[ShapeTimes]) -> anyhow::Result<String> 
 /// Number of pixels that show liquid: those whose exit flags contain a path.
 fn fluid_pixels(app: &App) -> anyhow::Result<usize> {
     let render = app.sub_app(RenderApp).world();
-    let Some(view) = render
+    let surfaces = render
         .iter_entities()
-        .find_map(|entity| entity.get::<ViewBodies>())
-    else {
-        return Ok(0);
-    };
+        .filter_map(|it| it.get::<Layers>()?.exits());
     let mut count = 0;
-    for body in &view.bodies {
-        let exits = read_texture(app, body.layers.exits())?;
+    for exits in surfaces {
+        let exits = read_texture(app, exits)?;
         count += exits
             .texels::<[u32; 4]>()
             .filter(|[_, _, _, flags]| flags >> 31 == 1)

@@ -2,7 +2,7 @@
 //!
 //! ```no_run
 //! use bevy::prelude::*;
-//! use bevy_fluid::{FluidInspectorPlugin, prelude::*};
+//! use bevy_fluid::{inspector::FluidInspectorPlugin, prelude::*};
 //!
 //! App::new()
 //!     .add_plugins((
@@ -18,7 +18,7 @@
 //! setting, arrows move sliders, Space opens lists, typed digits replace a number.
 //!
 //! Its content comes from reflection: names from the fields, explanations from their docs, sliders
-//! from [`SettingRange`](crate::SettingRange). Any component or resource that derives `Reflect` can
+//! from [`SettingRange`](crate::settings::SettingRange). Any component or resource that derives `Reflect` can
 //! be added: see [`FluidInspector::show`]. The inspector draws the fields itself, as no release of
 //! `bevy-inspector-egui` works with both Bevy 0.19 and `bevy_egui` 0.42: 0.37 needs `bevy_egui`
 //! 0.40, and 0.38 Bevy 0.20. A closed window costs nothing: if the program has no [`EguiPlugin`] of
@@ -48,10 +48,15 @@ pub use presets::{Presets, ReflectPresets};
 pub use rust_code::{rust_code, spawn_code};
 
 use crate::{
-    FluidDiagnosticsPlugin, FluidMaterial, FluidParticles, FluidSystems, ParticleCollider,
-    ParticleEmitter, Rain, ScreenSpaceFluid, SurfaceKernel,
-    rain::{RainShelter, RainStreaks},
+    FluidSystems,
+    diagnostics::FluidDiagnosticsPlugin,
+    emitter::{ParticleCollider, ParticleEmitter},
+    material::FluidMaterial,
+    particles::FluidParticles,
+    rain::{Rain, RainShelter, RainStreakSettings},
     schedule,
+    settings::ScreenSpaceFluid,
+    shape::SurfaceKernel,
 };
 
 /// Adds the inspector: see [`inspector`](crate::inspector). It adds [`EguiPlugin`] and
@@ -139,7 +144,7 @@ impl Plugin for FluidInspectorPlugin {
             .show::<ParticleEmitter>()
             .show::<ParticleCollider>()
             .show::<RainShelter>()
-            .show::<RainStreaks>();
+            .show::<RainStreakSettings>();
         #[cfg(feature = "recordings")]
         inspector
             .show::<crate::source::recording::RecordingPlayer>()
@@ -151,13 +156,13 @@ impl Plugin for FluidInspectorPlugin {
             .show::<crate::source::salva::SalvaBody>()
             .show::<crate::source::salva::SalvaSettings>();
         app.insert_resource(inspector)
-            .add_plugins(presets::plugin)
+            .add_plugins((presets::plugin, presets::views::plugin))
             .add_systems(Update, toggle)
             .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open))
             // What is set in the window takes effect in the same frame.
             .configure_sets(
                 PostUpdate,
-                EguiPostUpdateSet::EndPass.before(FluidSystems::Emit),
+                EguiPostUpdateSet::EndPass.before(FluidSystems::Check),
             );
         schedule::order(app);
         #[cfg(feature = "salva")]

@@ -6,8 +6,11 @@ use bevy::{
 };
 
 use crate::{
-    Bilateral, FluidMaterial, Medium, ParticleEmitter, PlaneFit, Rain, ScreenSpaceFluid,
-    SurfaceKernel,
+    emitter::ParticleEmitter,
+    material::{FluidMaterial, Medium},
+    rain::Rain,
+    settings::PlaneFit,
+    shape::SurfaceKernel,
 };
 
 /// A setting with named values. The inspector offers them if [`ReflectPresets`] is registered for
@@ -87,14 +90,33 @@ macro_rules! presets {
 
 // In the order in which they are offered.
 presets! {
-    ScreenSpaceFluid: FAST, DEFAULT, ACCURATE, THESIS, EARLIER;
     FluidMaterial: WATER, CLEAR_WATER, INK, MILK, HONEY, SMOKE, FIRE;
     SurfaceKernel: DEFAULT, THESIS, EARLIER, PUFFS;
     Medium: CLEAR;
     ParticleEmitter: DEFAULT, JET, FOUNTAIN, SHOWER, SPRAY, DRIP;
     PlaneFit: DEFAULT, THESIS;
-    Bilateral: DEFAULT, THESIS;
     Rain: DRIZZLE, RAIN, HEAVY, CLOUDBURST;
+}
+
+#[cfg(not(feature = "published"))]
+pub(super) mod views {
+    use super::*;
+    use crate::settings::ScreenSpaceFluid;
+
+    presets! {
+        ScreenSpaceFluid: FAST, DEFAULT, ACCURATE;
+    }
+}
+
+#[cfg(feature = "published")]
+pub(super) mod views {
+    use super::*;
+    use crate::settings::{Bilateral, ScreenSpaceFluid};
+
+    presets! {
+        ScreenSpaceFluid: FAST, DEFAULT, ACCURATE, THESIS, EARLIER;
+        Bilateral: DEFAULT, THESIS;
+    }
 }
 
 #[cfg(feature = "salva")]

@@ -8,8 +8,8 @@ use super::{
     widgets::{LABEL, WIDTH, digits},
 };
 use crate::{
-    ShapedFluid,
-    render::{BodyReport, PlanReports, Skipped},
+    particles::ShapedFluid,
+    render::{PlanReports, Skipped, SurfaceReport},
 };
 
 /// A section; it shows the report of the last frames for which one was requested.
@@ -30,44 +30,44 @@ pub(super) fn show(
             ui.weak("This camera draws no fluid.");
             return;
         };
-        if view.bodies.is_empty() {
+        if view.surfaces.is_empty() {
             ui.weak("There is no fluid: no pass runs.");
         }
-        for body in &view.bodies {
-            show_body(ui, world, body, fluids, types);
+        for surface in &view.surfaces {
+            show_body(ui, world, surface, fluids, types);
         }
     });
     header
         .header_response
-        .on_hover_text("Work that the scene makes needless, body by body, and why.");
+        .on_hover_text("Work that the scene makes needless, surface by surface, and why.");
 }
 
 fn show_body(
     ui: &mut Ui,
     world: &World,
-    body: &BodyReport,
+    surface: &SurfaceReport,
     fluids: &[(Entity, String)],
     types: &TypeRegistry,
 ) {
     let name = |entity: &Entity| fluids.iter().find(|(fluid, _)| fluid == entity);
-    let names: Vec<_> = body
+    let names: Vec<_> = surface
         .fluids
         .iter()
         .filter_map(|it| Some(name(it)?.1.as_str()))
         .collect();
-    let material = ReflectPresets::of(&body.material, types)
-        .and_then(|presets| presets.name_of(&body.material))
+    let material = ReflectPresets::of(&surface.material, types)
+        .and_then(|presets| presets.name_of(&surface.material))
         .unwrap_or("custom material");
     ui.label(RichText::new(format!("{} ({material})", names.join(", "))).strong());
-    for Skipped { work, why } in &body.skipped {
+    for Skipped { work, why } in &surface.skipped {
         line(ui, work, why);
     }
-    let outside = 100.0 * (1.0 - f64::from(body.covered));
+    let outside = 100.0 * (1.0 - f64::from(surface.covered));
     if outside >= 1.0 {
         let pixels = format!("{} % of the pixels", digits(outside.round()));
         line(ui, &pixels, "they are outside its box on screen");
     }
-    let unchanged = body.fluids.iter().all(|fluid| {
+    let unchanged = surface.fluids.iter().all(|fluid| {
         let fluid = world.get_entity(*fluid).ok();
         fluid.is_some_and(|it| {
             it.get_ref::<ShapedFluid>()

@@ -1,6 +1,5 @@
 //! The medium inside a fluid: absorption, scattering and emission of light.
 
-mod error;
 #[cfg(test)]
 mod tests;
 
@@ -8,9 +7,11 @@ use core::ops::Add;
 
 use bevy::prelude::*;
 
-pub use error::MediumError;
+use crate::settings::{SettingRange, Settings};
 
-use crate::range::SettingRange;
+/// Largest density (1/m) and emission (cd/m² per metre), so that squares and products with lengths
+/// stay finite.
+const MOST: f64 = 1e12;
 
 /// Largest extinction (1/m), far beyond any visible difference. GPUs compute exp with powers of 2:
 /// f32's largest numbers times log₂ e are infinite, and infinity times a distance of 0 is NaN.
@@ -34,23 +35,25 @@ const DENSEST: f32 = 1e30;
 #[reflect(Default, Clone, PartialEq)]
 pub struct Medium {
     /// Density of the matter that scatters light evenly in all directions (`α_D`). Unit: 1/m, range
-    /// 0.., default 0. Higher: more like milk.
-    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
+    /// 0..=1e12, default 0. Higher: more like milk.
+    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().valid(0.0, MOST))]
     pub scattering_density: f32,
     /// The colour of the scattering matter in white light (`C_D`), linear, each channel 0..=1,
     /// default white. Light that is not scattered is absorbed.
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub scattering_color: LinearRgba,
-    /// Density of the absorbing matter (`α_A`). Unit: 1/m, range 0.., default 0. Higher: light
+    /// Density of the absorbing matter (`α_A`). Unit: 1/m, range 0..=1e12, default 0. Higher: light
     /// fades over a shorter distance.
-    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().open())]
+    #[reflect(@SettingRange::new(0.0, 1000.0).unit("1/m").logarithmic().valid(0.0, MOST))]
     pub absorption_density: f32,
     /// The colour that the absorbing matter transmits (`C_A`), linear, each channel 0..=1, default
     /// white (nothing is absorbed).
+    #[reflect(@SettingRange::new(0.0, 1.0))]
     pub absorption_color: LinearRgba,
     /// Emission: light emitted by the medium itself (`C_E`). Unit: cd/m² per metre of depth, each
-    /// channel 0.., default black. Higher: brighter; with Bevy's default exposure, white begins at
+    /// channel 0..=1e12, default black. Higher: brighter; with Bevy's default exposure, white begins at
     /// about 1000 cd/m².
-    #[reflect(@SettingRange::new(0.0, 1e5).unit("cd/m³").logarithmic().open())]
+    #[reflect(@SettingRange::new(0.0, 1e5).unit("cd/m³").logarithmic().valid(0.0, MOST))]
     pub emission: LinearRgba,
 }
 
@@ -154,6 +157,8 @@ impl Medium {
         self.scattering_density * self.scattering_color.to_vec3()
     }
 }
+
+impl Settings for Medium {}
 
 impl Default for Medium {
     fn default() -> Self {

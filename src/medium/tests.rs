@@ -132,11 +132,19 @@ fn bad_fields_are_named_and_clamped() {
     };
     assert_eq!(white.validate(), Ok(()));
     let cases: [(&str, fn(&mut Medium, f32)); 5] = [
-        ("`scattering_density`", |m, v| m.scattering_density = v),
-        ("`scattering_color`", |m, v| m.scattering_color.green = v),
-        ("`absorption_density`", |m, v| m.absorption_density = v),
-        ("`absorption_color`", |m, v| m.absorption_color.blue = v),
-        ("`emission`", |m, v| m.emission.red = v),
+        ("`Medium::scattering_density`", |m, v| {
+            m.scattering_density = v;
+        }),
+        ("`Medium::scattering_color.green`", |m, v| {
+            m.scattering_color.green = v;
+        }),
+        ("`Medium::absorption_density`", |m, v| {
+            m.absorption_density = v;
+        }),
+        ("`Medium::absorption_color.blue`", |m, v| {
+            m.absorption_color.blue = v;
+        }),
+        ("`Medium::emission.red`", |m, v| m.emission.red = v),
     ];
     for (field, set) in cases {
         for value in [-1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30] {

@@ -22,9 +22,10 @@ use bevy::{
 use super::{
     densities::DENSITIES,
     drops::mean_speed,
-    settings::{LONGEST_FRAME, Rain, RainStreaks},
+    settings::{LONGEST_FRAME, Rain, RainStreakSettings},
     streaks::{HEIGHT, MIP_LEVELS, STEPS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
+use crate::settings::Checked;
 
 /// Progress of drawing the textures, 0 to 1.
 pub const BAKE_PROGRESS: DiagnosticPath = DiagnosticPath::const_new("rain/bake_progress");
@@ -96,8 +97,8 @@ impl BakedStreaks {
 }
 
 pub(crate) fn bake_streaks(
-    rains: Query<&Rain>,
-    settings: Res<RainStreaks>,
+    rains: Query<&Checked<Rain>>,
+    settings: Single<&Checked<RainStreakSettings>>,
     synchronous: Res<SynchronousBake>,
     lost_devices: Res<LostDevices>,
     time: Res<Time>,
@@ -111,7 +112,7 @@ pub(crate) fn bake_streaks(
         streaks.ready = None;
         streaks.lost_devices = lost_devices;
     }
-    let is_raining = rains.iter().any(|rain| rain.clamped().rate > 0.0);
+    let is_raining = rains.iter().any(|rain| rain.rate > 0.0);
     if !is_raining && streaks.running.is_none() {
         return;
     }

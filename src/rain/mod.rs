@@ -38,7 +38,6 @@
 
 mod bake;
 pub(crate) mod births;
-mod check;
 mod clock;
 pub mod densities;
 mod draw;
@@ -52,13 +51,17 @@ use bevy::{
     prelude::*,
 };
 
+#[doc(hidden)]
+pub use self::draw::RainQuads;
 pub use self::{
     bake::{BAKE_PROGRESS, BAKE_TIME, BakedStreaks},
-    check::RainError,
     clock::RainClock,
-    draw::RainQuads,
     drops::DragLaw,
-    settings::{Exposure, Rain, RainMethod, RainShelter, RainStreaks},
+    settings::{Exposure, Rain, RainMethod, RainShelter, RainStreakSettings},
+};
+use crate::{
+    schedule::FluidSystems,
+    settings::{Checked, check},
 };
 
 /// Draws rain for cameras with [`Rain`]; independent of `FluidPlugin`.
@@ -71,10 +74,13 @@ pub struct RainPlugin {
 
 impl Plugin for RainPlugin {
     fn build(&self, app: &mut App) {
+        check::<Rain>(app);
+        check::<RainShelter>(app);
+        check::<RainStreakSettings>(app);
         app.register_type::<Rain>()
             .register_type::<RainShelter>()
-            .register_type::<RainStreaks>()
-            .init_resource::<RainStreaks>()
+            .register_type::<RainStreakSettings>()
+            .init_resource::<RainStreakSettings>()
             .init_resource::<BakedStreaks>()
             .init_resource::<bake::LostDevices>()
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
@@ -83,12 +89,13 @@ impl Plugin for RainPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    check::check_rain,
-                    check::check_shelters,
-                    bake::bake_streaks,
+                    settings::check_places,
+                    // A program without a renderer may have no images.
+                    bake::bake_streaks.run_if(resource_exists::<Assets<Image>>),
                     advance_clocks,
                 )
                     .chain()
+                    .after(FluidSystems::Check)
                     .after(TransformSystems::Propagate),
             )
             .add_plugins(draw::RainDrawPlugin);
@@ -96,7 +103,7 @@ impl Plugin for RainPlugin {
 }
 
 fn advance_clocks(
-    mut cameras: Query<(&Rain, &GlobalTransform, &mut RainClock)>,
+    mut cameras: Query<(&Checked<Rain>, &GlobalTransform, &mut RainClock)>,
     streaks: Res<BakedStreaks>,
     time: Res<Time>,
 ) {
@@ -104,7 +111,7 @@ fn advance_clocks(
         return;
     };
     for (rain, transform, mut clock) in &mut cameras {
-        let (wind, height) = (rain.clamped().wind, transform.translation().y);
+        let (wind, height) = (rain.wind, transform.translation().y);
         clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
     }
 }

@@ -1,13 +1,13 @@
 //! Rain settings.
 
-use bevy::{camera::Hdr, prelude::*};
+use bevy::{camera::Hdr, ecs::entity::EntityHashSet, prelude::*};
 
 use super::{
     clock::RainClock,
     drops::DragLaw,
-    streaks::{DEFAULT_EXPOSURE, clamped_exposure},
+    streaks::{DEFAULT_EXPOSURE, LONGEST_EXPOSURE, SHORTEST_EXPOSURE},
 };
-use crate::range::SettingRange;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// Makes a camera draw rain.
 ///
@@ -21,11 +21,11 @@ use crate::range::SettingRange;
 /// the ambient light, and the camera's environment map or sky box.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Hdr, RainClock)]
+#[require(Hdr, RainClock, Checked<Self>)]
 pub struct Rain {
     /// Rain rate. Unit: mm/h, range 0..=200, default 5. It may change from frame to frame; at 0 no
-    /// work is done. Drops keep their sizes and speeds as others are added.
-    #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic())]
+    /// work is done; NaN counts as 0. Drops keep their sizes and speeds as others are added.
+    #[reflect(@SettingRange::new(0.0, 200.0).unit("mm/h").logarithmic().initial(0.0))]
     pub rate: f32,
     /// Distance from the camera up to which streaks are drawn; beyond it the background fades.
     /// Unit: m, range 1..=100, default 5 as in the rain paper. Higher: depth and motion in far
@@ -72,6 +72,8 @@ impl Rain {
     }
 }
 
+impl Settings for Rain {}
+
 impl Default for Rain {
     fn default() -> Self {
         Self::RAIN
@@ -91,9 +93,12 @@ pub enum RainMethod {
 }
 
 /// Inputs of the textures of streaks. The textures are redrawn in the background when this changes.
+///
+/// Values out of range are logged once and clamped.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
-pub struct RainStreaks {
+#[require(Checked<Self>)]
+pub struct RainStreakSettings {
     /// Exposure time: streaks are as long as the distance that drops fall in it.
     pub exposure: Exposure,
     /// How fast drops fall. Default [`DragLaw::GunnKinzer`].
@@ -101,6 +106,8 @@ pub struct RainStreaks {
     /// Random seed: different seeds give different drops. Any number, default 0.
     pub seed: u64,
 }
+
+impl Settings for RainStreakSettings {}
 
 /// An exposure time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
@@ -113,7 +120,11 @@ pub enum Exposure {
     FrameTime,
     /// A fixed time. Unit: s, range 1/10,000..=1/10.
     Seconds(
-        #[reflect(@SettingRange::new(1e-4, 0.1).unit("s").logarithmic().start(1.0 / 60.0))] f32,
+        #[reflect(@SettingRange::new(SHORTEST_EXPOSURE as f64, LONGEST_EXPOSURE as f64)
+            .unit("s")
+            .logarithmic()
+            .initial(DEFAULT_EXPOSURE as f64))]
+        f32,
     ),
 }
 
@@ -125,7 +136,7 @@ impl Exposure {
     /// the exposure `current` (if any).
     pub(crate) fn seconds(self, frame: Option<f32>, current: Option<f32>) -> f32 {
         match self {
-            Self::Seconds(seconds) => clamped_exposure(seconds),
+            Self::Seconds(seconds) => seconds,
             Self::FrameTime => {
                 let wanted = frame.or(current).unwrap_or(DEFAULT_EXPOSURE);
                 let wanted = wanted.clamp(1.0 / 240.0, LONGEST_FRAME);
@@ -141,15 +152,50 @@ impl Exposure {
 /// A box that keeps rain off: it is dry inside and below it, along the fall of the drops.
 ///
 /// The entity's `GlobalTransform` places the box; only the eight shelters nearest to a camera
-/// count.
+/// count. One whose transform has no inverse keeps no rain off.
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform)]
+#[require(Transform, Checked<Self>)]
 pub struct RainShelter {
-    /// Half of the box's sides in the entity's space. Unit: m at a scale of 1, range 0..=100 and
-    /// more, default 1 each.
-    #[reflect(@SettingRange::new(0.0, 100.0).unit("m").open())]
+    /// Half of the box's sides in the entity's space. Unit: m at a scale of 1, range 0..=1e9, default
+    /// 1 each; NaN counts as 0. The box may be as flat as a sheet.
+    #[reflect(@SettingRange::new(0.0, 100.0).unit("m").valid(0.0, 1e9).initial(0.0))]
     pub half_size: Vec3,
+}
+
+impl Settings for RainShelter {}
+
+/// Whether a shelter there has a volume, or a sheet's area.
+pub(crate) fn is_place(transform: &GlobalTransform) -> bool {
+    let determinant = transform.affine().matrix3.determinant();
+    determinant.is_finite() && determinant.abs() > 1e-12
+}
+
+/// Logs shelters in places that have none, once.
+pub(super) fn check_places(
+    moved: Query<
+        (Entity, &GlobalTransform),
+        (
+            With<RainShelter>,
+            Or<(Changed<GlobalTransform>, Added<RainShelter>)>,
+        ),
+    >,
+    mut gone: RemovedComponents<RainShelter>,
+    mut warned: Local<EntityHashSet>,
+) {
+    for entity in gone.read() {
+        warned.remove(&entity);
+    }
+    for (entity, transform) in &moved {
+        if is_place(transform) {
+            warned.remove(&entity);
+        } else if warned.insert(entity) {
+            let scale = transform.scale();
+            warn!("shelter {entity} keeps no rain off: its scale is {scale}, without an inverse");
+        }
+    }
 }
 
 impl Default for RainShelter {
@@ -173,5 +219,84 @@ mod tests {
         assert_eq!(auto.seconds(Some(0.025), Some(1.0 / 60.0)), 0.025);
         assert_eq!(auto.seconds(None, Some(0.02)), 0.02);
         assert_eq!(Exposure::Seconds(0.002).seconds(Some(0.01), None), 0.002);
+    }
+    #[test]
+    fn presets_make_sense() {
+        for (rain, rate) in [
+            (Rain::DRIZZLE, 1.0),
+            (Rain::RAIN, 5.0),
+            (Rain::HEAVY, 20.0),
+            (Rain::CLOUDBURST, 75.0),
+        ] {
+            assert_eq!(rain.validate(), Ok(()));
+            assert_eq!(rain.clamped(), rain);
+            assert_eq!(rain.rate, rate);
+        }
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_named_and_clamped() {
+        for (rate, expected) in [
+            (-1.0, 0.0),
+            (f32::NAN, 0.0),
+            (1e6, 200.0),
+            (f32::INFINITY, 200.0),
+        ] {
+            let rain = Rain::falling(rate);
+            assert_eq!(rain.validate().unwrap_err().name, "Rain::rate");
+            assert_eq!(rain.clamped(), Rain::falling(expected));
+        }
+        let mut odd = Rain {
+            distance: f32::NEG_INFINITY,
+            extent: f32::NAN,
+            wind: vec2(f32::NAN, 1e9),
+            brightness: -3.0,
+            ..Rain::RAIN
+        };
+        let clamped = odd.clamped();
+        assert_eq!((clamped.distance, clamped.extent), (1.0, 500.0));
+        assert_eq!(clamped.wind, vec2(0.0, 30.0));
+        assert_eq!(clamped.brightness, 0.0);
+        // The invalid fields are named one after the other, until none is left.
+        for (name, mend) in [
+            (
+                "distance",
+                (|odd, clamped| odd.distance = clamped.distance) as fn(&mut Rain, Rain),
+            ),
+            ("extent", |odd, clamped| odd.extent = clamped.extent),
+            ("wind.x", |odd, clamped| odd.wind.x = clamped.wind.x),
+            ("wind.y", |odd, clamped| odd.wind.y = clamped.wind.y),
+            ("brightness", |odd, clamped| {
+                odd.brightness = clamped.brightness;
+            }),
+        ] {
+            let error = odd.validate().unwrap_err();
+            assert_eq!(error.name, format!("Rain::{name}"));
+            mend(&mut odd, clamped);
+        }
+        assert_eq!(odd.validate(), Ok(()));
+        assert_eq!(
+            Rain::falling(1e6).validate().unwrap_err().to_string(),
+            "`Rain::rate` is 1000000; it must be from 0 to 200 mm/h"
+        );
+    }
+
+    #[test]
+    fn exposures_are_named_and_clamped() {
+        for (seconds, expected) in [
+            (9.0, LONGEST_EXPOSURE),
+            (-1.0, SHORTEST_EXPOSURE),
+            (f32::NAN, DEFAULT_EXPOSURE),
+        ] {
+            let streaks = RainStreakSettings {
+                exposure: Exposure::Seconds(seconds),
+                ..default()
+            };
+            let error = streaks.validate().unwrap_err();
+            assert_eq!(error.name, "RainStreakSettings::exposure");
+            let expected = Exposure::Seconds(expected);
+            assert_eq!(streaks.clamped().exposure, expected);
+        }
+        assert_eq!(RainStreakSettings::default().validate(), Ok(()));
     }
 }

@@ -101,7 +101,7 @@ impl Streak {
 }
 
 /// The valid exposure time nearest to `seconds`.
-pub(crate) fn clamped_exposure(seconds: f32) -> f32 {
+fn clamped_exposure(seconds: f32) -> f32 {
     if seconds.is_nan() {
         DEFAULT_EXPOSURE
     } else {

@@ -18,7 +18,7 @@ use bevy::{
 };
 use fluid_stage::{headless_app, read_buffer, settle};
 
-use super::gpu_types::GpuBody;
+use super::surface::GpuSurface;
 use crate::{
     FluidPlugin,
     rain::{RainPlugin, births::diameter_of_birth},
@@ -53,10 +53,10 @@ impl Formula {
         settle(&mut app).unwrap();
         let layouts = [
             BindGroupLayoutDescriptor::new(
-                "body",
+                "surface",
                 &BindGroupLayoutEntries::with_indices(
                     ShaderStages::COMPUTE,
-                    ((1, uniform_buffer::<GpuBody>(false)),),
+                    ((2, uniform_buffer::<GpuSurface>(false)),),
                 ),
             ),
             BindGroupLayoutDescriptor::new(
@@ -86,7 +86,7 @@ impl Formula {
         }
     }
 
-    fn run(&self, body: GpuBody, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    fn run(&self, surface: GpuSurface, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let world = self.app.sub_app(RenderApp).world();
         let cache = world.resource::<PipelineCache>();
         let (device, queue) = (
@@ -102,16 +102,16 @@ impl Formula {
         };
         let input = buffer(BufferUsages::STORAGE);
         let output = buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let mut uniform = UniformBuffer::from(body);
+        let mut uniform = UniformBuffer::from(surface);
         uniform.write_buffer(device, queue);
-        let [body, numbers] = self
+        let [surface, numbers] = self
             .layouts
             .each_ref()
             .map(|l| cache.get_bind_group_layout(l));
-        let body = device.create_bind_group(
+        let surface = device.create_bind_group(
             None,
-            &body,
-            &BindGroupEntries::with_indices(((1, uniform.binding().unwrap()),)),
+            &surface,
+            &BindGroupEntries::with_indices(((2, uniform.binding().unwrap()),)),
         );
         let numbers = device.create_bind_group(
             None,
@@ -124,7 +124,7 @@ impl Formula {
         let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
         pass.set_pipeline(cache.get_compute_pipeline(self.pipeline).unwrap());
-        pass.set_bind_group(0, &body, &[]);
+        pass.set_bind_group(0, &surface, &[]);
         pass.set_bind_group(1, &numbers, &[]);
         pass.dispatch_workgroups(inputs.len() as u32, 1, 1);
         drop(pass);
@@ -150,7 +150,7 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
         let inputs: Vec<_> = angles
             .map(|angle| [angle.sin() as f32, 0.0, -angle.cos() as f32, index as f32])
             .collect();
-        let outputs = formula.run(GpuBody::default(), &inputs);
+        let outputs = formula.run(GpuSurface::default(), &inputs);
         for ([x, _, z, eta], [reflectance, rx, ry, rz]) in inputs.iter().zip(&outputs) {
             let (eta, ci) = (f64::from(*eta), f64::from(-z));
             let wanted = {
@@ -183,17 +183,17 @@ fn h29_an_interface_at_and_about_the_critical_angle() {
 #[test]
 fn h34_h50_the_medium_equals_f64_on_the_gpu() {
     let formula = Formula::new(
-        "render::bindings::body\n#import bevy_fluid::render::medium::transmitted",
-        "vec4(transmitted(body.extinction, in.x), 1.0)",
+        "render::frame::surface\n#import bevy_fluid::render::medium::transmitted",
+        "vec4(transmitted(surface.extinction, in.x), 1.0)",
     );
     let distances = [0.0, 1e-6, 1e-3, 1.0, 1e6, f32::MAX, f32::INFINITY];
     let inputs = distances.map(|d| [d, 0.0, 0.0, 0.0]);
     for extinction in [[0.0, 1e-9, 1e-6], [1e-3, 1.0, 1e3], [1e30, 1e-30, 0.5]] {
-        let body = GpuBody {
+        let surface = GpuSurface {
             extinction: extinction.into(),
             ..default()
         };
-        for ([d, ..], left) in inputs.iter().zip(formula.run(body, &inputs)) {
+        for ([d, ..], left) in inputs.iter().zip(formula.run(surface, &inputs)) {
             for (b, left) in extinction.iter().zip(left) {
                 // The path is clamped to 1e30 m: 0 · ∞ is NaN.
                 let exact = (-f64::from(*b) * f64::from(*d).min(1e30)).exp();

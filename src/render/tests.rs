@@ -6,7 +6,7 @@ use bevy::{
         RenderApp,
         render_resource::{
             CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipeline,
-            SpecializedRenderPipelines, TextureFormat,
+            TextureFormat,
         },
     },
     shader::ShaderDefVal,
@@ -15,15 +15,17 @@ use fluid_stage::{headless_app, settle};
 
 use super::{
     composite::{CompositeKey, CompositePart, CompositePipeline},
+    debug_view::{DebugKey, DebugPipeline},
     normals::{NormalSource, NormalsPipeline},
-    plan::{MediumTerms, PlanInput, plan},
     refract::{RefractKey, RefractPipeline},
-    smooth::{SmoothPipeline, SmoothSteps},
+    smooth::{AveragePipeline, SmoothPipeline, steps::steps},
     splat::{SplatKey, SplatOutput, SplatPipeline},
+    surface::plan::{MediumTerms, PlanInput, plan},
     thickness::ThicknessPipeline,
 };
 use crate::{
-    FluidMaterial, FluidPlugin,
+    FluidPlugin,
+    material::FluidMaterial,
     settings::{
         Bilateral, FluidDebugView, NarrowRange, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing,
     },
@@ -84,9 +86,8 @@ fn every_splat_output_is_made() {
 
 #[test]
 fn every_source_of_normals_is_made() {
-    let averages = (1..=8).map(|half_taps| NormalSource::Average { half_taps });
-    let others = [NormalSource::Depth, NormalSource::Ellipsoids];
-    assert_variants::<NormalsPipeline>(averages.chain(others).collect());
+    assert_variants::<NormalsPipeline>(vec![NormalSource::Depth, NormalSource::Ellipsoids]);
+    assert_variants::<AveragePipeline>([None].into_iter().chain((1..=8).map(Some)).collect());
 }
 
 /// Every kind of smoothing with every number of taps; twice over, for the last pass may differ.
@@ -121,15 +122,8 @@ fn smoothings() -> impl Iterator<Item = Smoothing> {
 
 #[test]
 fn every_smoothing_is_made() {
-    assert_made(|world| {
-        let (pipeline, cache) = (world.resource(), world.resource());
-        let mut made = SpecializedRenderPipelines::<SmoothPipeline>::default();
-        smoothings()
-            .flat_map(|smoothing| {
-                SmoothSteps::new(&smoothing).pipelines(cache, &mut made, pipeline)
-            })
-            .collect()
-    });
+    let steps = smoothings().flat_map(|smoothing| steps(&smoothing));
+    assert_variants::<SmoothPipeline>(steps.collect());
 }
 
 /// Bulk and spray traced through a medium that has no terms.
@@ -193,7 +187,7 @@ fn every_medium_is_made() {
         index_one: true,
         ..TRACED
     };
-    let bodies = [
+    let surfaces = [
         TRACED,
         one,
         straight,
@@ -210,8 +204,8 @@ fn every_medium_is_made() {
             ..straight
         },
     ];
-    let bodies = bodies.into_iter();
-    let keys = terms.flat_map(|terms| bodies.clone().map(move |key| RefractKey { terms, ..key }));
+    let surfaces = surfaces.into_iter();
+    let keys = terms.flat_map(|terms| surfaces.clone().map(move |key| RefractKey { terms, ..key }));
     assert_variants::<RefractPipeline>(keys.collect());
 }
 
@@ -250,46 +244,37 @@ fn every_thickness_is_made() {
 }
 
 #[test]
-fn every_composite_and_debug_view_is_made() {
-    let views: Vec<_> = [None]
-        .into_iter()
-        .chain(FluidDebugView::ALL.map(Some))
-        .collect();
+fn every_composite_is_made() {
     let formats = [TextureFormat::Rgba16Float, TextureFormat::Rgba8UnormSrgb];
-    let keys = pairs(&pairs(&views, &formats), &[1, 4]);
-    let keys = keys
-        .into_iter()
-        .map(|((debug_view, format), samples)| CompositeKey {
-            debug_view,
-            format,
-            samples,
-            part: CompositePart::Whole,
-            several: false,
-            accumulated: false,
-        });
-    let summed_up = CompositeKey {
-        debug_view: Some(FluidDebugView::Thickness),
-        format: TextureFormat::Rgba16Float,
-        samples: 1,
-        part: CompositePart::Whole,
-        several: false,
-        accumulated: true,
-    };
     let parts = [
+        CompositePart::Whole,
         CompositePart::Light,
         CompositePart::Depth,
         CompositePart::DenseDepth,
     ];
-    let parts = pairs(&pairs(&parts, &formats), &[1, 4]);
-    let parts = parts
+    let keys = pairs(&pairs(&parts, &formats), &pairs(&[1, 4], &BOTH));
+    let keys = keys
         .into_iter()
-        .map(|((part, format), samples)| CompositeKey {
-            debug_view: None,
+        .map(|((part, format), (samples, several))| CompositeKey {
             format,
             samples,
             part,
-            several: true,
-            accumulated: false,
+            several,
         });
-    assert_variants::<CompositePipeline>(keys.chain(parts).chain([summed_up]).collect());
+    assert_variants::<CompositePipeline>(keys.collect());
+}
+
+#[test]
+fn every_debug_view_is_made() {
+    let formats = [TextureFormat::Rgba16Float, TextureFormat::Rgba8UnormSrgb];
+    let keys = pairs(&pairs(&FluidDebugView::ALL, &formats), &[1, 4]);
+    let keys = keys
+        .into_iter()
+        .map(|((debug_view, format), samples)| DebugKey {
+            debug_view,
+            format,
+            samples,
+            accumulated: samples == 4 && debug_view == FluidDebugView::Thickness,
+        });
+    assert_variants::<DebugPipeline>(keys.collect());
 }

@@ -1,19 +1,30 @@
-//! How a camera draws fluids.
+//! How a camera draws fluids, and the one check of all settings.
 
+mod check;
+mod checked;
 mod debug_view;
 mod plane_fit;
+#[cfg(feature = "published")]
 mod published;
+mod range;
 mod tracing;
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
+#[cfg(test)]
+pub(crate) use self::check::for_each_number;
+#[doc(hidden)]
+pub use self::checked::Checked;
+pub(crate) use self::checked::check;
+#[cfg(feature = "published")]
+pub use self::published::{Bilateral, CurvatureFlow, NarrowRange, NormalAverage};
 pub use self::{
+    check::{SettingError, Settings},
     debug_view::FluidDebugView,
     plane_fit::{PlaneFit, PlaneFitForm},
-    published::{Bilateral, CurvatureFlow, NarrowRange, NormalAverage},
+    range::SettingRange,
     tracing::{Fresnel, Refractions, Search},
 };
-use crate::range::SettingRange;
 
 /// Makes a camera draw particle fluids.
 ///
@@ -22,9 +33,11 @@ use crate::range::SettingRange;
 /// [`ScreenSpaceFluid::ACCURATE`] on either side. Their docs give times relative to the default, at
 /// 320×240 on a software driver, and the FLIP error against ray-traced pictures of a ball and of a
 /// half-filled box.
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(DepthPrepass, Hdr)]
+#[require(DepthPrepass, Hdr, Checked<Self>)]
 pub struct ScreenSpaceFluid {
     /// How the bumps of single particles are removed from the bulk. Default:
     /// [`PlaneFit::DEFAULT`].
@@ -67,29 +80,9 @@ impl ScreenSpaceFluid {
         fresnel: Fresnel::Exact,
         contact: 1.0,
     };
-
-    /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick. Use
-    /// it with [`SurfaceKernel::THESIS`](crate::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
-    /// (ball) of the default's; FLIP 0.56 and 0.43.
-    pub const THESIS: Self = Self {
-        smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
-        refractions: Refractions::Four,
-        search: Search::Secant,
-        fresnel: Fresnel::Schlick,
-        contact: 0.0,
-    };
-
-    /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
-    /// with [`SurfaceKernel::EARLIER`](crate::SurfaceKernel::EARLIER): spheres of one class. Time
-    /// 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
-    pub const EARLIER: Self = Self {
-        smoothing: Smoothing::Bilateral(Bilateral::THESIS),
-        refractions: Refractions::Two,
-        search: Search::Secant,
-        fresnel: Fresnel::Schlick,
-        contact: 0.0,
-    };
 }
+
+impl Settings for ScreenSpaceFluid {}
 
 impl Default for ScreenSpaceFluid {
     fn default() -> Self {
@@ -106,13 +99,48 @@ pub enum Smoothing {
     /// A plane is fitted to the window around each pixel (thesis 4.3).
     PlaneFit(PlaneFit),
     /// A bilateral filter of view depth (thesis 3.2, the earlier method).
+    #[cfg(feature = "published")]
     Bilateral(Bilateral),
     /// Normals are averaged, depth is unchanged (Takahashi & Doi).
+    #[cfg(feature = "published")]
     NormalAverage(NormalAverage),
     /// The narrow-range filter (Truong & Yuksel 2018).
+    #[cfg(feature = "published")]
     NarrowRange(NarrowRange),
     /// Curvature flow (van der Laan, Green & Sainz 2009).
+    #[cfg(feature = "published")]
     CurvatureFlow(CurvatureFlow),
+}
+
+impl Smoothing {
+    /// Whether normals come with it.
+    pub(crate) fn yields_normals(&self) -> bool {
+        match self {
+            Self::PlaneFit(_) => true,
+            #[cfg(feature = "published")]
+            Self::NormalAverage(_) => true,
+            _ => false,
+        }
+    }
+
+    /// The number of passes that read layers and write others.
+    pub(crate) fn layer_passes(&self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::PlaneFit(fit) if fit.form == PlaneFitForm::Separable => {
+                2 * fit.iterations.saturating_sub(1)
+            }
+            Self::PlaneFit(fit) => fit.iterations,
+            #[cfg(feature = "published")]
+            Self::NormalAverage(_) => 0,
+            #[cfg(feature = "published")]
+            Self::Bilateral(filter) => filter.iterations,
+            #[cfg(feature = "published")]
+            Self::NarrowRange(filter) => 2 * filter.iterations,
+            #[cfg(feature = "published")]
+            Self::CurvatureFlow(flow) => flow.iterations,
+        }
+    }
 }
 
 impl Default for Smoothing {

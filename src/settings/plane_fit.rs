@@ -2,8 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::Window;
-use crate::range::SettingRange;
+use super::{SettingRange, Window};
 
 /// Smoothing by a local plane (thesis 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]

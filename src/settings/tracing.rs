@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::range::SettingRange;
+use super::SettingRange;
 
 /// Maximum number of interfaces between liquid and air that a ray crosses (or is totally reflected
 /// at).
@@ -43,7 +43,7 @@ pub enum Search {
     Bracketed {
         /// Evenly spaced samples taken first, to find the first of several crossings.
         /// Range 0..=32, default 0. More: fewer wrong crossings at steps in depth.
-        #[reflect(@SettingRange::new(0.0, 32.0).unit("samples").start(0.0))]
+        #[reflect(@SettingRange::new(0.0, 32.0).unit("samples").initial(0.0))]
         coarse_samples: u32,
     },
 }

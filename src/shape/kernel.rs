@@ -2,15 +2,16 @@
 
 use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault};
 
-use super::ShapeError;
-use crate::range::SettingRange;
+use crate::settings::{Checked, SettingError, SettingRange, Settings};
 
 /// How the particles of one fluid are classified and shaped into ellipsoids (anisotropic kernels).
 ///
 /// Lengths are in particle radii, so one kernel suits scenes of any scale. The defaults suit
-/// particles about two radii apart, as SPH keeps them at rest.
+/// particles about two radii apart, as SPH keeps them at rest. Values out of range are logged once
+/// and clamped.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone)]
+#[require(Checked<Self>)]
 pub struct SurfaceKernel {
     /// Distance within which particles are neighbours (R = 2h in the papers).
     ///
@@ -134,37 +135,17 @@ impl SurfaceKernel {
         neighbor_radius: 1.0,
         ..Self::EARLIER
     };
+}
 
-    /// Checks every field against its documented range.
-    ///
-    /// # Errors
-    /// Returns [`ShapeError::Setting`] or [`ShapeError::NeighborOrder`], which name the field and
-    /// its value.
-    pub fn validate(&self) -> Result<(), ShapeError> {
-        let ranges = [
-            ("neighbor_radius", self.neighbor_radius, 1.0, 10.0),
-            ("center_shift", self.center_shift, 0.0, 1.0),
-            ("surface_offset", self.surface_offset, 0.0, 4.0),
-            ("max_ratio", self.max_ratio, 1.0, 16.0),
-            ("radius_scale", self.radius_scale, 0.1, 10.0),
-        ];
-        for (field, value, min, max) in ranges {
-            // NaN is in no range.
-            if !(min..=max).contains(&value) {
-                return Err(ShapeError::Setting {
-                    field,
-                    value,
-                    min,
-                    max,
-                });
-            }
+impl Settings for SurfaceKernel {
+    fn mend(&mut self) -> Result<(), SettingError> {
+        let [sphere, full] = [self.sphere_neighbors, self.full_neighbors];
+        if sphere <= full {
+            return Ok(());
         }
-        if self.sphere_neighbors > self.full_neighbors {
-            return Err(ShapeError::NeighborOrder {
-                sphere: self.sphere_neighbors,
-                full: self.full_neighbors,
-            });
-        }
-        Ok(())
+        self.sphere_neighbors = full;
+        let most = format!("at most `full_neighbors`, {full}");
+        let name = "SurfaceKernel::sphere_neighbors";
+        Err(SettingError::new(name, sphere, most))
     }
 }

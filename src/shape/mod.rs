@@ -50,42 +50,28 @@ use classify::Classes;
 use grid::Grid;
 use neighborhood::Neighborhood;
 
+use crate::settings::{SettingError, SettingRange, Settings};
+
 /// Number of sorted particles per task. Fixed, so that tasks, and thus all rounding, are
 /// deterministic for any number of threads.
 const CHUNK: usize = 512;
 
-/// Smallest and largest radius (m) whose squares and cubes are far from f32's limits.
-const RADII: [f32; 2] = [1e-9, 1e9];
+/// The radius of particles. The squares and cubes of valid ones are far from f32's limits.
+pub(crate) const RADIUS: SettingRange = SettingRange::new(1e-3, 1.0)
+    .unit("m")
+    .logarithmic()
+    .valid(1e-9, 1e9);
 
 /// Why particles cannot be shaped.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ShapeError {
     /// The radius is out of range.
     #[error("particle radius is {0} m; it must be positive and finite, from 1e-9 to 1e9 m")]
     Radius(f32),
-    /// A setting is out of range.
-    #[error("`SurfaceKernel::{field}` is {value}; it must be from {min} to {max}")]
-    Setting {
-        /// Name of the field.
-        field: &'static str,
-        /// Its value.
-        value: f32,
-        /// Smallest value allowed.
-        min: f32,
-        /// Largest value allowed.
-        max: f32,
-    },
-    /// `sphere_neighbors` exceeds `full_neighbors`.
-    #[error(
-        "`SurfaceKernel::sphere_neighbors` is {sphere}; it must not exceed `full_neighbors`, {full}"
-    )]
-    NeighborOrder {
-        /// `sphere_neighbors`.
-        sphere: u32,
-        /// `full_neighbors`.
-        full: u32,
-    },
+    /// A setting of the kernel is out of range.
+    #[error(transparent)]
+    Kernel(#[from] SettingError),
     /// There are more particles than a splat's index can count.
     #[error("{0} particles; there can be at most {max}", max = u32::MAX)]
     TooManyParticles(usize),
@@ -158,7 +144,7 @@ impl ShapeWorkspace {
 fn check(positions: &[Vec3], radius: f32, kernel: &SurfaceKernel) -> Result<(), ShapeError> {
     kernel.validate()?;
     // The radius of a fluid that is still to be loaded or emitted may be set later.
-    if !positions.is_empty() && !(RADII[0]..=RADII[1]).contains(&radius) {
+    if !positions.is_empty() && !RADIUS.contains(radius) {
         return Err(ShapeError::Radius(radius));
     }
     if positions.len() >= u32::MAX as usize {

@@ -1,9 +1,9 @@
 //! Sources: where a fluid's particles come from. None of them knows how they are drawn.
 
-pub(crate) mod emitter;
-pub(crate) mod particles;
+pub mod emitter;
+pub mod particles;
 #[cfg(feature = "recordings")]
 pub mod recording;
 #[cfg(feature = "salva")]
 pub mod salva;
-pub(crate) mod solid;
+pub mod solid;

@@ -4,9 +4,9 @@ use bevy::prelude::*;
 
 use crate::{
     material::FluidMaterial,
-    range::SettingRange,
     schedule::FluidSystems,
-    shape::{FluidSplats, ShapeTimes, ShapeWorkspace, SurfaceKernel},
+    settings::Checked,
+    shape::{FluidSplats, RADIUS, ShapeTimes, ShapeWorkspace, SurfaceKernel},
 };
 
 /// A fluid: particles of one radius, as columns. What is known of particle i is item i of each.
@@ -31,8 +31,9 @@ pub struct FluidParticles {
     /// The space of the positions, the velocities and the radius. Default: [`ParticleSpace::Local`].
     pub space: ParticleSpace,
     /// Radius of every particle, half the distance between neighbours at rest. Unit: m, range
-    /// 1e-9..=1e9, default 0, valid only without particles.
-    #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open())]
+    /// 1e-9..=1e9, default 0, valid only without particles. Particles of an invalid radius are not
+    /// drawn; that is logged once.
+    #[reflect(@RADIUS)]
     pub radius: f32,
 }
 
@@ -143,8 +144,13 @@ impl ShapedFluid {
 /// Shapes every fluid whose particles or kernel have changed.
 pub(crate) fn shape_fluids(
     mut fluids: Query<
-        (Entity, &FluidParticles, &SurfaceKernel, &mut ShapedFluid),
-        Or<(Changed<FluidParticles>, Changed<SurfaceKernel>)>,
+        (
+            Entity,
+            &FluidParticles,
+            &Checked<SurfaceKernel>,
+            &mut ShapedFluid,
+        ),
+        Or<(Changed<FluidParticles>, Changed<Checked<SurfaceKernel>>)>,
     >,
     mut workspace: Local<ShapeWorkspace>,
 ) {

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::range::SettingRange;
+use crate::settings::SettingRange;
 
 /// The shape of a convex solid in the space of its entity: Bevy's primitives, around the origin,
 /// and the ground. Each primitive converts into it.
@@ -15,7 +15,7 @@ pub enum SolidShape {
     /// A ball. With a non-uniform scale, the largest component applies.
     Sphere {
         /// Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().start(0.1))]
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().initial(0.1))]
         radius: f32,
     },
     /// A box along the axes.
@@ -28,19 +28,19 @@ pub enum SolidShape {
     /// applies to the radius.
     Capsule {
         /// Radius of the cylinder and the hemispheres. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().start(0.1))]
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().initial(0.1))]
         radius: f32,
         /// Half of the cylinder's length, without the hemispheres. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().start(0.1))]
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().initial(0.1))]
         half_length: f32,
     },
     /// A cylinder along y. The greater of the scales along x and z applies to the radius.
     Cylinder {
         /// Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().start(0.1))]
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().initial(0.1))]
         radius: f32,
         /// Half of its height. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().start(0.1))]
+        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic().initial(0.1))]
         half_height: f32,
     },
 }

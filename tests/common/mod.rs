@@ -15,12 +15,15 @@ use bevy::{
     camera::{Hdr, ScalingMode},
     core_pipeline::tonemapping::Tonemapping,
     prelude::*,
-    render::{RenderApp, render_resource::Texture},
+    render::{
+        RenderApp,
+        render_resource::{Texture, TextureFormat},
+    },
 };
 use bevy_fluid::{
-    Fresnel, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel,
     prelude::*,
-    render::{Body, Layers, ViewBodies},
+    render::{Layers, Surface, ViewSurfaces},
+    settings::{Fresnel, Refractions, Search, Smoothing},
 };
 use fluid_stage::{TextureData, headless_app, read_texture};
 
@@ -219,24 +222,67 @@ pub(crate) fn spawn_box(world: &mut World, size: Vec3, transform: Transform) -> 
 }
 
 /// What the first view that sees liquid holds of it.
-pub(crate) fn view_bodies(app: &App) -> Option<&ViewBodies> {
+pub(crate) fn view_surfaces(app: &App) -> Option<&ViewSurfaces> {
     app.sub_app(RenderApp)
         .world()
         .iter_entities()
-        .find_map(|entity| entity.get::<ViewBodies>())
+        .find_map(|entity| entity.get::<ViewSurfaces>())
 }
 
-/// The only body in view.
-pub(crate) fn body(app: &App) -> &Body {
-    let [body] = &view_bodies(app).expect("liquid is in view").bodies[..] else {
-        panic!("one body is in view");
+/// The surfaces of the first view that sees liquid, from far to near.
+pub(crate) fn surfaces(app: &App) -> Vec<(&Surface, &Layers)> {
+    let world = app.sub_app(RenderApp).world();
+    let view = view_surfaces(app).expect("liquid is in view");
+    let surfaces = view.surfaces.iter().map(|&surface| {
+        let surface = world.entity(surface);
+        (surface.get().unwrap(), surface.get().unwrap())
+    });
+    surfaces.collect()
+}
+
+/// The only surface in view.
+pub(crate) fn surface(app: &App) -> (&Surface, &Layers) {
+    let [surface] = surfaces(app)[..] else {
+        panic!("one surface is in view");
     };
-    body
+    surface
 }
 
-/// One of the only body's textures: `read(&app, Layers::bulk)`.
-pub(crate) fn read(app: &App, pick: fn(&Layers) -> &Texture) -> TextureData {
-    read_texture(app, pick(&body(app).layers)).unwrap()
+/// One of the only surface's textures, as large as the view: `read(&app, Layers::bulk)`. What it
+/// lacks is "nothing"; radiance and transmission are whole, and have an alpha of 1 where there is
+/// liquid.
+pub(crate) fn read(app: &App, pick: fn(&Layers) -> Option<&Texture>) -> TextureData {
+    let (_, layers) = surface(app);
+    let size = view_surfaces(app).unwrap().viewport().size();
+    let placed = |texture: Option<&Texture>| {
+        let data = read_texture(app, texture.expect("it has one")).unwrap();
+        let no_layers = bytemuck::cast_slice(&[0.0_f32, -2.0]);
+        let nothing = match data.format {
+            TextureFormat::Rg32Float => no_layers,
+            _ => &[0; 16],
+        };
+        data.placed(layers.origin(), size, nothing)
+    };
+    let id = |texture: Option<&Texture>| texture.map(Texture::id);
+    let is = |other: fn(&Layers) -> Option<&Texture>| id(pick(layers)) == id(other(layers));
+    let mut data = placed(pick(layers));
+    if is(Layers::radiance) || is(Layers::transmission) {
+        let [radiance, transmission, exits] =
+            [layers.radiance(), layers.transmission(), layers.exits()].map(placed);
+        let texels = pixels(size).flat_map(|UVec2 { x, y }| {
+            let [r, g, b, red]: [u16; 4] = radiance.texel(x, y);
+            let [green, blue]: [u16; 2] = transmission.texel(x, y);
+            let there = half::f16::from_f32((exits.u32x4(x, y)[3] >> 31) as f32).to_bits();
+            if is(Layers::radiance) {
+                [r, g, b, there]
+            } else {
+                [red, green, blue, there]
+            }
+        });
+        data.bytes = texels.flat_map(u16::to_le_bytes).collect();
+        data.format = TextureFormat::Rgba16Float;
+    }
+    data
 }
 
 /// All pixels of a texture.

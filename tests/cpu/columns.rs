@@ -1,7 +1,10 @@
 //! The columns of a fluid's particles.
 
 use bevy::{prelude::*, shader::Shader};
-use bevy_fluid::{FluidParticles, FluidPlugin, ShapedFluid};
+use bevy_fluid::{
+    FluidPlugin,
+    particles::{FluidParticles, ShapedFluid},
+};
 use fluid_stage::log;
 
 #[test]

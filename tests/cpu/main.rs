@@ -9,4 +9,5 @@ mod emitter;
 mod random_clouds;
 mod readme;
 mod salva;
+mod settings;
 mod shape;

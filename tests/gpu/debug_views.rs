@@ -1,9 +1,9 @@
 //! Debug views that show an amount show the right one.
 
-use crate::common::{BULK, Lens, RAW, SPRAY, View, body, fluid, look, pixels, pour, show};
+use crate::common::{BULK, Lens, RAW, SPRAY, View, fluid, look, pixels, pour, read, show, surface};
 use bevy::{prelude::*, render::render_resource::TextureFormat};
-use bevy_fluid::{FluidDebugView, ScreenSpaceFluid, prelude::*};
-use fluid_stage::{capture, read_texture};
+use bevy_fluid::{prelude::*, render::Layers, settings::FluidDebugView};
+use fluid_stage::capture;
 
 /// A sphere of radius 1 m fills it but for a margin. The middle pixel sees its centre.
 const PARALLEL: View = View::new(
@@ -53,8 +53,7 @@ fn overdraw_counts_the_splats_of_both_classes() {
     for kernel in [BULK, SPRAY] {
         for count in [1, 4, 16, 64] {
             pour(&mut app, fluid(&vec![CENTER; count], 1.0, kernel));
-            let texture = body(&app).layers.overdraw().expect("it is counted").clone();
-            let data = read_texture(&app, &texture).unwrap();
+            let data = read(&app, Layers::overdraw);
             assert_eq!(data.format, TextureFormat::R32Float);
             let counts: &[f32] = bytemuck::cast_slice(&data.bytes);
             for pixel in pixels(PARALLEL.size) {
@@ -71,7 +70,7 @@ fn overdraw_counts_the_splats_of_both_classes() {
         }
     }
     look(&mut app, FluidDebugView::Normals);
-    assert!(body(&app).layers.overdraw().is_none(), "no one looks");
+    assert!(surface(&app).1.overdraw().is_none(), "no one looks");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use bevy::{
         settings::{RenderCreation, WgpuSettings},
     },
 };
-use bevy_fluid::{ScreenSpaceFluid, ShapedFluid, SurfaceKernel, prelude::*};
+use bevy_fluid::{particles::ShapedFluid, prelude::*};
 use fluid_stage::{Stage, capture, headless_app_with, step};
 
 const VIEW: View = View::new(
@@ -86,7 +86,7 @@ fn a_lost_device_is_survived() {
     let stage = app.world().resource::<Stage>().image.clone();
     assert!(app.world().resource::<Assets<Image>>().contains(&stage));
     assert_sound(&app);
-    assert!(view_bodies(&app).is_some());
+    assert!(view_surfaces(&app).is_some());
     assert!(capture(&mut app).unwrap() == before);
 }
 

@@ -6,10 +6,7 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_fluid::{
-    FluidDebugView, Medium, ScreenSpaceFluid, ShapedFluid, SurfaceKernel, prelude::*,
-    render::GpuSplats,
-};
+use bevy_fluid::{particles::ShapedFluid, prelude::*, render::GpuSplats, settings::FluidDebugView};
 use fluid_stage::{capture, headless_app, resize, step, validation_errors};
 use image::{RgbaImage, imageops::crop_imm};
 
@@ -105,7 +102,7 @@ fn without_liquid_in_view_the_picture_is_bevys_own() {
     assert!(picture(&mut app) == plain, "no fluid");
     for at in [Vec3::Z * 12.0, Vec3::X * 30.0] {
         pour(&mut app, (pool(), Transform::from_translation(at)));
-        assert!(view_bodies(&app).is_none(), "{at}");
+        assert!(view_surfaces(&app).is_none(), "{at}");
         assert!(picture(&mut app) == plain, "out of view at {at}");
     }
     pour(&mut app, (pool(), Visibility::Hidden));
@@ -117,7 +114,7 @@ fn without_liquid_in_view_the_picture_is_bevys_own() {
         .entity_mut(camera)
         .remove::<ScreenSpaceFluid>();
     step(&mut app, 1);
-    assert!(view_bodies(&app).is_none());
+    assert!(view_surfaces(&app).is_none());
     assert!(picture(&mut app) == plain, "a camera that draws no fluids");
 }
 
@@ -337,7 +334,7 @@ fn an_opaque_thing_in_front_hides_the_liquid() {
     let alone = picture(&mut app);
     // Within the silhouette of the cube, whose front is 1.7 m away.
     pour(&mut app, (pool(), Transform::from_scale(Vec3::splat(0.95))));
-    let hidden = view_bodies(&app).is_some();
+    let hidden = view_surfaces(&app).is_some();
     assert!(hidden, "the liquid is in the frustum");
     assert!(picture(&mut app) == alone);
 }
@@ -356,10 +353,10 @@ fn fluids_of_different_materials_are_bodies_of_their_own() {
     let at = Transform::from_xyz(0.6, 0.4, 0.5);
     app.world_mut().spawn((pool(), at)).insert(ink);
     settle(&mut app).unwrap();
-    assert_eq!(view_bodies(&app).unwrap().bodies.len(), 2);
+    assert_eq!(view_surfaces(&app).unwrap().surfaces.len(), 2);
     let two = picture(&mut app);
     change_all_materials(&mut app, ink);
-    assert_eq!(view_bodies(&app).unwrap().bodies.len(), 1);
+    assert_eq!(view_surfaces(&app).unwrap().surfaces.len(), 1);
     assert!(picture(&mut app) != two);
 }
 

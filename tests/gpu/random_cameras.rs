@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 
 use crate::common::*;
 use bevy::{camera::CameraProjection, prelude::*};
-use bevy_fluid::{SurfaceKernel, render::Layers};
+use bevy_fluid::{prelude::SurfaceKernel, render::Layers};
 use proptest::{prelude::*, test_runner::TestRunner};
 
 /// Any lens at all: of any angle, parallel, off-centre, mirrored, oblique.
@@ -131,7 +131,7 @@ fn nothing_of_an_ellipsoid_is_outside_of_its_quad() {
             .iter()
             .map(|&p| Ellipsoid::new(&view, &scene.place, p, radius))
             .collect();
-        if view_bodies(app).is_none() {
+        if view_surfaces(app).is_none() {
             // Then no pixel's ray may meet any of it.
             for pixel in pixels(view.size) {
                 let ray = view.ray(View::center(pixel));

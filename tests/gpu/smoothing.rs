@@ -2,7 +2,11 @@
 
 use crate::common::*;
 use bevy::{math::DVec3, prelude::*};
-use bevy_fluid::{Bilateral, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing, render::Layers};
+use bevy_fluid::{
+    prelude::ScreenSpaceFluid,
+    render::Layers,
+    settings::{Bilateral, PlaneFit, PlaneFitForm, Smoothing},
+};
 
 const FORMS: [PlaneFitForm; 3] = [
     PlaneFitForm::TotalLeastSquares,

@@ -4,7 +4,7 @@ use std::{fs, path::Path, thread, time::Duration};
 
 use bevy::{ecs::schedule::SingleThreadedExecutor, prelude::*, shader::Shader};
 use bevy_fluid::{
-    EmittedParticles,
+    emitter::EmittedParticles,
     prelude::*,
     recording::{FluidRecording, LoadedFrames, ParticleFrame, RecordingPlayer, RecordingSettings},
 };
@@ -18,7 +18,7 @@ fn app() -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, AssetPlugin::default()))
         .init_asset::<Shader>()
-        .add_plugins(FluidPlugin::default())
+        .add_plugins((FluidPlugin::default(), RecordingPlugin))
         .edit_schedule(PostUpdate, |schedule| {
             schedule.set_executor(SingleThreadedExecutor::new());
         });

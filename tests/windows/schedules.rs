@@ -8,7 +8,9 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_fluid::{FluidDiagnosticsPlugin, FluidInspectorPlugin, prelude::*};
+use bevy_fluid::{
+    diagnostics::FluidDiagnosticsPlugin, inspector::FluidInspectorPlugin, prelude::*,
+};
 use fluid_stage::headless_app;
 
 /// Pairs of systems that run in any order though they share data, with what they share; one of

@@ -3,7 +3,7 @@
 use std::{hint::black_box, time::Instant};
 
 use bevy::math::{DVec3, Vec3};
-use bevy_fluid::{FluidMaterial, Medium};
+use bevy_fluid::prelude::{FluidMaterial, Medium};
 use fluid_reference::{
     Image,
     medium::{Medium as TrueMedium, march},

@@ -4,9 +4,11 @@ use std::collections::HashSet;
 
 use bevy::color::Color;
 use bevy_fluid::{
-    Bilateral, CurvatureFlow, FluidMaterial, Fresnel, Medium, NarrowRange, NormalAverage, PlaneFit,
-    PlaneFitForm, Refractions, ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, Thickness,
-    Window,
+    prelude::{FluidMaterial, Medium, ScreenSpaceFluid, SurfaceKernel, Thickness},
+    settings::{
+        Bilateral, CurvatureFlow, Fresnel, NarrowRange, NormalAverage, PlaneFit, PlaneFitForm,
+        Refractions, Search, Smoothing, Window,
+    },
 };
 
 /// Settings by name.

@@ -1,7 +1,10 @@
 //! How far pictures are from the tracer's.
 
 use bevy::math::DVec3;
-use bevy_fluid::{FluidMaterial, Fresnel, Refractions, ScreenSpaceFluid};
+use bevy_fluid::{
+    prelude::{FluidMaterial, ScreenSpaceFluid},
+    settings::{Fresnel, Refractions},
+};
 use fluid_reference::{
     Image, Surface,
     mesh::LayerMeshes,

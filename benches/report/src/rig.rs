@@ -8,14 +8,16 @@ use bevy::{
     render::{
         RenderApp,
         render_resource::{
-            Texture, TextureDataOrder, TextureDescriptor, TextureDimension, TextureUsages,
+            Extent3d, Texture, TextureDataOrder, TextureDescriptor, TextureDimension,
+            TextureFormat, TextureUsages,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
     },
 };
 use bevy_fluid::{
-    FluidMaterial, FluidParticles, FluidPlugin, ShapedFluid,
-    render::{Body, ExitRay, FluidPasses, Layers, ViewBodies, decode_normal, encode_normal},
+    particles::ShapedFluid,
+    prelude::{FluidMaterial, FluidParticles, FluidPlugin},
+    render::{ExitRay, FluidPasses, Layers, ViewSurfaces, decode_normal, encode_normal},
 };
 use fluid_reference::{
     Image, Lens, Span,
@@ -127,19 +129,34 @@ impl Rig {
         }
     }
 
-    fn body(&self) -> Option<&Body> {
+    /// Textures of the only surface.
+    fn layers(&self) -> Option<&Layers> {
         let render = self.app.get_sub_app(RenderApp)?.world();
-        let mut views = render.iter_entities();
-        views.find_map(|entity| entity.get::<ViewBodies>()?.bodies.first())
+        let mut surfaces = render.iter_entities();
+        surfaces.find_map(|entity| entity.get::<Layers>())
     }
 
-    fn read(&self, pick: fn(&Layers) -> &Texture) -> Result<Option<TextureData>, ReportError> {
-        let Some(body) = self.body() else {
+    /// A texture, as large as the view.
+    fn read(
+        &self,
+        pick: fn(&Layers) -> Option<&Texture>,
+    ) -> Result<Option<TextureData>, ReportError> {
+        let Some((layers, texture)) = self
+            .layers()
+            .and_then(|layers| Some((layers, pick(layers)?)))
+        else {
             return Ok(None);
         };
-        let data = read_texture(&self.app, pick(&body.layers))?;
-        // A class that has no layers has a single texel.
-        Ok((data.size == self.camera.size).then_some(data))
+        let data = read_texture(&self.app, texture)?;
+        let nothing: &[u8] = match data.format {
+            TextureFormat::Rg32Float => bytemuck::cast_slice(&[0.0_f32, -2.0]),
+            _ => &[0; 16],
+        };
+        Ok(Some(data.placed(
+            layers.origin(),
+            self.camera.size,
+            nothing,
+        )))
     }
 
     /// Layers and normals as the last frame left them.
@@ -191,14 +208,22 @@ impl Rig {
     /// Radiance and transmission where there is liquid.
     pub(crate) fn light(&self) -> Result<[Image<Option<DVec3>>; 2], ReportError> {
         let size = self.camera.size;
-        let read = |pick| -> Result<_, ReportError> {
-            let data = self.read(pick)?;
-            Ok(image(size, &data, |data, UVec2 { x, y }| {
-                let [r, g, b, there] = data.f16x4(x, y);
-                (there > 0.0).then(|| vec3(r, g, b).as_dvec3())
-            }))
-        };
-        Ok([read(Layers::radiance)?, read(Layers::transmission)?])
+        let exits = self.exits()?;
+        let radiance = self.read(Layers::radiance)?;
+        let transmission = self.read(Layers::transmission)?;
+        let there = |pixel: UVec2| exits.get(pixel).is_some();
+        let light = image(size, &radiance, |data, pixel| {
+            let [r, g, b, _] = data.f16x4(pixel.x, pixel.y);
+            there(pixel).then(|| vec3(r, g, b).as_dvec3())
+        });
+        // Red is the radiance's alpha.
+        let passed = image(size, &transmission, |data, pixel| {
+            let [.., r] = radiance.as_ref()?.f16x4(pixel.x, pixel.y);
+            let halves: [u16; 2] = data.texel(pixel.x, pixel.y);
+            let [g, b] = halves.map(|half| f16::from_bits(half).to_f32());
+            there(pixel).then(|| vec3(r, g, b).as_dvec3())
+        });
+        Ok([light, passed])
     }
 
     /// The picture, sRGB-encoded in 0..=1.
@@ -254,14 +279,14 @@ impl Rig {
                 [a, b, c, d]
             })
             .collect();
-        let texture = |pick: fn(&Layers) -> &Texture, bytes: &[u8]| {
-            let format = self.body().map(|body| pick(&body.layers).format());
+        let texture = |pick: fn(&Layers) -> Option<&Texture>, bytes: &[u8]| {
+            let format = self.layers().and_then(pick).map(|it| it.format());
             let world = self.app.world();
             world.resource::<RenderDevice>().create_texture_with_data(
                 world.resource::<RenderQueue>(),
                 &TextureDescriptor {
                     label: Some("exact_layers"),
-                    size: bevy::render::render_resource::Extent3d {
+                    size: Extent3d {
                         width: spans.size().x,
                         height: spans.size().y,
                         depth_or_array_layers: 1,
@@ -323,25 +348,41 @@ struct ExactLayers {
 }
 
 fn put_exact_layers(
-    view: ViewQuery<&ViewBodies>,
+    view: ViewQuery<&ViewSurfaces>,
+    surfaces: Query<&Layers>,
     exact: Option<Res<ExactLayers>>,
     mut ctx: RenderContext,
 ) {
     let Some(exact) = exact else {
         return;
     };
-    for body in &view.into_inner().bodies {
+    for layers in surfaces.iter_many(&view.into_inner().surfaces) {
         for (from, to) in [
-            (&exact.layers, body.layers.bulk()),
-            (&exact.normals, body.layers.bulk_normals()),
+            (&exact.layers, layers.bulk()),
+            (&exact.normals, layers.bulk_normals()),
         ] {
-            if from.size() == to.size() {
-                ctx.command_encoder().copy_texture_to_texture(
-                    from.as_image_copy(),
-                    to.as_image_copy(),
-                    to.size(),
-                );
-            }
+            let Some(to) = to else {
+                continue;
+            };
+            // The part of the view that the textures hold.
+            let view = ivec2(from.width() as i32, from.height() as i32);
+            let min = layers.origin().max(IVec2::ZERO);
+            let max = (layers.origin() + layers.size().as_ivec2()).min(view);
+            let mut source = from.as_image_copy();
+            (source.origin.x, source.origin.y) = (min.x as u32, min.y as u32);
+            let mut target = to.as_image_copy();
+            let at = (min - layers.origin()).as_uvec2();
+            (target.origin.x, target.origin.y) = (at.x, at.y);
+            let size = (max - min).as_uvec2();
+            ctx.command_encoder().copy_texture_to_texture(
+                source,
+                target,
+                Extent3d {
+                    width: size.x,
+                    height: size.y,
+                    depth_or_array_layers: 1,
+                },
+            );
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy::math::{DVec3, UVec2};
 use bevy_fluid::{
-    FluidMaterial, SurfaceKernel,
+    prelude::{FluidMaterial, SurfaceKernel},
     shape::{FluidSplats, ShapeWorkspace, Splat},
 };
 use fluid_reference::{

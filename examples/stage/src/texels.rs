@@ -1,6 +1,9 @@
 //! Texels on the CPU.
 
-use bevy::{math::UVec2, render::render_resource::TextureFormat};
+use bevy::{
+    math::{IVec2, UVec2, ivec2},
+    render::render_resource::TextureFormat,
+};
 use bytemuck::AnyBitPattern;
 use half::f16;
 
@@ -21,6 +24,29 @@ pub struct TextureData {
 /// These methods panic, as indexing does, outside the texture and if the requested type is not as
 /// large as a texel.
 impl TextureData {
+    /// A larger image with these texels at `origin`, as far as they lie in it; all others are
+    /// `nothing`.
+    pub fn placed(&self, origin: IVec2, size: UVec2, nothing: &[u8]) -> Self {
+        let texel = self.bytes.len() / (self.size.x * self.size.y) as usize;
+        let mut bytes = Vec::with_capacity((size.x * size.y) as usize * texel);
+        for y in 0..size.y as i32 {
+            for x in 0..size.x as i32 {
+                let at = ivec2(x, y) - origin;
+                if at.cmplt(IVec2::ZERO).any() || at.cmpge(self.size.as_ivec2()).any() {
+                    bytes.extend(&nothing[..texel]);
+                } else {
+                    let start = (at.y as u32 * self.size.x + at.x as u32) as usize * texel;
+                    bytes.extend(&self.bytes[start..start + texel]);
+                }
+            }
+        }
+        Self {
+            size,
+            format: self.format,
+            bytes,
+        }
+    }
+
     /// The texel as any plain type of its size.
     pub fn texel<T: AnyBitPattern>(&self, x: u32, y: u32) -> T {
         assert!(

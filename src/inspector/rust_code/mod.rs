@@ -2,7 +2,7 @@
 
 mod literal;
 mod spawn;
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 mod tests;
 
 use std::fmt::Write;
@@ -29,7 +29,7 @@ pub use self::spawn::spawn_code;
 ///
 /// ```
 /// use bevy::{prelude::*, reflect::TypeRegistry};
-/// use bevy_fluid::{SurfaceKernel, inspector::rust_code};
+/// use bevy_fluid::{prelude::SurfaceKernel, inspector::rust_code};
 ///
 /// let mut registry = TypeRegistry::new();
 /// registry.register::<SurfaceKernel>();

@@ -8,7 +8,7 @@ use bevy::{
 use core::any::TypeId;
 
 use super::Writer;
-use crate::FluidDebugView;
+use crate::settings::FluidDebugView;
 
 /// The Rust statement that spawns an entity with those of its components that are in `types`, each
 /// as [`rust_code`](super::rust_code) writes it. The entity's name, its transform and its
@@ -17,7 +17,7 @@ use crate::FluidDebugView;
 ///
 /// ```
 /// use bevy::{prelude::*, reflect::TypeRegistry};
-/// use bevy_fluid::{SurfaceKernel, inspector::spawn_code};
+/// use bevy_fluid::{prelude::SurfaceKernel, inspector::spawn_code};
 /// use core::any::TypeId;
 ///
 /// let mut registry = TypeRegistry::new();

@@ -2,10 +2,14 @@ use core::any::TypeId;
 
 use super::*;
 use crate::{
-    Bilateral, EmitterBounds, FluidDebugView, FluidMaterial, FluidParticles, Fresnel, Medium,
-    ParticleCollider, ParticleEmitter, PlaneFit, PlaneFitForm, Rain, Refractions, ScreenSpaceFluid,
-    Search, Smoothing, SolidShape, SurfaceKernel, Thickness, Window,
-    rain::{Exposure, RainStreaks},
+    emitter::EmitterBounds,
+    prelude::*,
+    rain::{Exposure, RainStreakSettings},
+    settings::{
+        Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, Search, Smoothing,
+        Window,
+    },
+    solid::SolidShape,
 };
 
 fn registry() -> TypeRegistry {
@@ -18,7 +22,7 @@ fn registry() -> TypeRegistry {
     registry.register::<SurfaceKernel>();
     registry.register::<ScreenSpaceFluid>();
     registry.register::<Rain>();
-    registry.register::<RainStreaks>();
+    registry.register::<RainStreakSettings>();
     registry
 }
 
@@ -150,12 +154,12 @@ fn the_code_of_materials_kernels_and_rain_compiles() {
         }
     );
     assert_code!(
-        RainStreaks {
+        RainStreakSettings {
             exposure: Exposure::Seconds(0.02),
             seed: u64::MAX,
-            ..RainStreaks::default()
+            ..RainStreakSettings::default()
         },
-        RainStreaks {
+        RainStreakSettings {
             exposure: Exposure::Seconds(0.02),
             seed: 18446744073709551615,
             ..default()
@@ -226,7 +230,7 @@ macro_rules! assert_spawns {
             TypeId::of::<FluidParticles>(),
             TypeId::of::<ParticleEmitter>(),
             TypeId::of::<ParticleCollider>(),
-            TypeId::of::<RainStreaks>(),
+            TypeId::of::<RainStreakSettings>(),
         ];
         let mut entities = world.query::<EntityRef>();
         let is_shown = |entity: &EntityRef| {
@@ -269,7 +273,7 @@ fn the_code_of_an_entity_is_the_sum_of_its_parts() {
 #[test]
 fn the_code_of_a_scene_spawns_it() {
     assert_spawns! { commands =>
-        commands.insert_resource(RainStreaks {
+        commands.insert_resource(RainStreakSettings {
             seed: 7,
             ..default()
         });

@@ -16,7 +16,7 @@ use super::{
     presets::ReflectPresets,
     widgets::{Field, VALUE, leaf, row},
 };
-use crate::SettingRange;
+use crate::settings::SettingRange;
 
 /// Walks over values of the types that the registry knows.
 pub(super) struct Walker<'a> {

@@ -14,8 +14,8 @@ use core::any::TypeId;
 
 use super::{Walker, has_widget};
 use crate::{
-    SettingRange,
     inspector::widgets::{Field, VALUE, explained},
+    settings::SettingRange,
 };
 
 impl Walker<'_> {
@@ -156,7 +156,7 @@ impl Walker<'_> {
             macro_rules! numbers {
                 ($($type:ty),+) => {
                     $(if id == TypeId::of::<$type>() {
-                        return Some(Box::new(range.first() as $type));
+                        return Some(Box::new(range.initial_value() as $type));
                     })+
                 };
             }

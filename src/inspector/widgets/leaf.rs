@@ -8,7 +8,7 @@ use super::{
     VALUE,
     number::{color, number, vector},
 };
-use crate::SettingRange;
+use crate::settings::SettingRange;
 
 /// The widgets of a value without parts; `None` for what has parts, or cannot be edited.
 pub(in crate::inspector) fn leaf(

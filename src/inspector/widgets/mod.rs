@@ -11,7 +11,7 @@ pub(super) use self::{
     leaf::leaf,
     text::{digits, words},
 };
-use crate::SettingRange;
+use crate::settings::SettingRange;
 
 /// Widths of the columns, in points.
 pub(super) const LABEL: f32 = 128.0;

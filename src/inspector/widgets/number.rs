@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::egui::{DragValue, Id, RichText, Slider, SliderClamping, Ui};
 
 use super::{GAP, NUMBER, SLIDER, VALUE, digits};
-use crate::SettingRange;
+use crate::settings::SettingRange;
 
 /// A slider, where there is a range, and the number. Whether it was changed.
 pub(super) fn number(
@@ -60,7 +60,7 @@ fn drag(
             }
         });
     if let Some(range) = range {
-        drag = drag.range(range.min..=range.limit());
+        drag = drag.range(range.valid[0]..=range.valid[1]);
     }
     if !unit.is_empty() {
         drag = drag.suffix(RichText::new(format!(" {unit}")).weak());
@@ -105,13 +105,14 @@ pub(super) fn vector(
     edited
 }
 
-/// A colour; with a range, one that may be brighter than white, and how bright it is.
+/// A colour; with a range beyond 1, one that may be brighter than white, and how bright it is.
 pub(super) fn color(
     ui: &mut Ui,
     label: Id,
     color: &mut LinearRgba,
     range: Option<&SettingRange>,
 ) -> bool {
+    let range = range.filter(|range| range.max > 1.0);
     let rgb = color.to_vec3();
     let full = if range.is_some() {
         rgb.max_element()

@@ -1,10 +1,10 @@
-//! How many particles there are.
+//! How many particles there are, and how much memory pictures of them take.
 
 use bevy::prelude::*;
 use bevy_egui::egui::{CollapsingHeader, RichText, Ui};
 
 use super::Subjects;
-use crate::{ShapedFluid, inspector::times};
+use crate::{inspector::times, particles::ShapedFluid, render::TextureMemory};
 
 /// Particles by class, of the fluid and of all.
 pub(super) fn counts(ui: &mut Ui, world: &World, fluid: Entity, subjects: &Subjects) {
@@ -40,6 +40,11 @@ pub(super) fn counts(ui: &mut Ui, world: &World, fluid: Entity, subjects: &Subje
             let names = ["particles", "bulk", "interior", "spray", "dropped"];
             for ((name, one), all) in names.into_iter().zip(one).zip(all) {
                 times::figures_row(ui, RichText::new(name), [one, all].map(|it| it.to_string()));
+            }
+            if let Some(memory) = world.get_resource::<TextureMemory>() {
+                let mebibytes = memory.bytes() as f64 / f64::from(1 << 20);
+                let figures = [String::new(), format!("{mebibytes:.1}")];
+                times::figures_row(ui, RichText::new("textures, MiB"), figures);
             }
         });
 }

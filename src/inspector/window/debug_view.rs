@@ -4,8 +4,8 @@ use bevy::prelude::*;
 use bevy_egui::egui::{ComboBox, Ui};
 
 use crate::{
-    FluidDebugView,
     inspector::widgets::{self, Field, row},
+    settings::FluidDebugView,
 };
 
 /// What a camera shows in place of the picture.

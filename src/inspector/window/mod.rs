@@ -18,7 +18,7 @@ use super::{
     FluidInspector, skipped, spawn_code, times,
     widgets::{self, WIDTH},
 };
-use crate::ScreenSpaceFluid;
+use crate::settings::ScreenSpaceFluid;
 
 /// Shows the window in the primary context.
 pub(in crate::inspector) fn show(world: &mut World, mut clock: Local<times::Clock>) {

@@ -9,8 +9,9 @@ use bevy_egui::egui::{CollapsingHeader, Ui};
 use core::any::TypeId;
 
 use crate::{
-    FluidMaterial, ScreenSpaceFluid,
     inspector::{rust_code, walker::Walker, widgets},
+    material::FluidMaterial,
+    settings::ScreenSpaceFluid,
 };
 
 /// A section for a component, if the entity has it.

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::reflect::ReflectResource, prelude::*, reflect::TypeRegistry};
 
-use crate::{FluidParticles, inspector::FluidInspector};
+use crate::{inspector::FluidInspector, particles::FluidParticles};
 
 /// Entities that have something to show.
 #[derive(Default)]

@@ -10,8 +10,9 @@ use super::quads::RainQuads;
 use crate::rain::{
     bake::{BakedStreaks, ReadyStreaks},
     clock::RainClock,
-    settings::{Rain, RainShelter},
+    settings::{Rain, RainShelter, is_place},
 };
+use crate::settings::Checked;
 
 impl SyncComponent for Rain {
     type Target = (ExtractedRain, RainQuads);
@@ -64,7 +65,7 @@ pub(crate) fn extract_rain(
         Query<
             (
                 RenderEntity,
-                &Rain,
+                &Checked<Rain>,
                 &RainClock,
                 Option<&AmbientLight>,
                 Option<&EnvironmentMapLight>,
@@ -79,7 +80,6 @@ pub(crate) fn extract_rain(
     mut commands: Commands,
 ) {
     for (entity, rain, clock, own_ambient, light, skybox) in &cameras {
-        let rain = rain.clamped();
         let known = extracted.get_mut(entity);
         let ready = streaks.ready().filter(|_| rain.rate > 0.0);
         let Some(streaks) = ready else {
@@ -94,7 +94,7 @@ pub(crate) fn extract_rain(
             (own.color, own.brightness)
         });
         let new = ExtractedRain {
-            rain,
+            rain: **rain,
             clock: *clock,
             streaks: streaks.clone(),
             ambient: color.to_linear().to_vec3() * brightness,
@@ -114,13 +114,13 @@ pub(crate) fn extract_rain(
 pub(crate) struct Shelters(pub(crate) Vec<(GlobalTransform, Vec3)>);
 
 pub(crate) fn extract_shelters(
-    shelters: Extract<Query<(&RainShelter, &GlobalTransform)>>,
+    shelters: Extract<Query<(&Checked<RainShelter>, &GlobalTransform)>>,
     mut extracted: ResMut<Shelters>,
 ) {
     extracted.0.clear();
     for (shelter, transform) in &shelters {
-        if shelter.validate(transform).is_ok() {
-            extracted.0.push((*transform, shelter.half_size.abs()));
+        if is_place(transform) {
+            extracted.0.push((*transform, shelter.half_size));
         }
     }
 }

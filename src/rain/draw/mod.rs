@@ -88,7 +88,7 @@ impl Plugin for RainDrawPlugin {
                     .in_set(Core3dSystems::MainPass)
                     .after(main_opaque_pass_3d)
                     .after(main_transmissive_pass_3d)
-                    .after(crate::render::composite::composite)
+                    .after(crate::render::FluidPasses::Composite)
                     .before(main_transparent_pass_3d),
             );
     }

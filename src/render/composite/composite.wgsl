@@ -1,24 +1,25 @@
 // The liquid over the opaque scene.
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::frame::{frame, surface, view}
 #import bevy_fluid::render::functions::{
     decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth, ndc_from_pixel,
-    pixel_from_ndc, view_depth, view_from_device,
+    pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
 }
 #import bevy_fluid::render::optics::environment
 #import bevy_fluid::render::types::INSIDE_FRONT
 
-@group(1) @binding(2) var radiance: texture_2d<f32>;
-@group(1) @binding(3) var transmission: texture_2d<f32>;
-@group(1) @binding(4) var exits: texture_2d<u32>;
-@group(1) @binding(5) var bulk_layers: texture_2d<f32>;
-@group(1) @binding(6) var spray_layers: texture_2d<f32>;
-@group(1) @binding(7) var scene_color: texture_2d<f32>;
-@group(1) @binding(8) var scene_sampler: sampler;
+// Radiance, and the transmitted fraction of red.
+@group(1) @binding(0) var radiance: texture_2d<f32>;
+// The transmitted fractions of green and blue.
+@group(1) @binding(1) var transmission: texture_2d<f32>;
+@group(1) @binding(2) var exits: texture_2d<u32>;
+@group(1) @binding(3) var bulk_layers: texture_2d<f32>;
+@group(1) @binding(4) var spray_layers: texture_2d<f32>;
 
-#ifdef SEVERAL
-@group(1) @binding(9) var scene_before: texture_2d<f32>;
-#endif
+// The scene's colour as it is before this surface, and before any.
+@group(3) @binding(0) var scene_color: texture_2d<f32>;
+@group(3) @binding(1) var scene_before: texture_2d<f32>;
+@group(3) @binding(2) var scene_sampler: sampler;
 
 struct Output {
 #ifndef DEPTH_ALONE
@@ -36,9 +37,8 @@ const HALVINGS: i32 = 4;
 
 fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec3<f32> {
     // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
-    let low = view.main_pass_viewport.xy + 0.5;
-    let high = view.main_pass_viewport.xy + view.main_pass_viewport.zw - 0.5;
-    let uv = clamp(pixel, low, high) / vec2<f32>(textureDimensions(scene));
+    let inside = clamp(pixel, vec2(0.5), frame.view_size - 0.5) + frame.view_origin;
+    let uv = inside / vec2<f32>(textureDimensions(scene));
     return textureSampleLevel(scene, scene_sampler, uv, 0.0).rgb;
 }
 
@@ -46,14 +46,14 @@ fn color_at(pixel: vec2<f32>) -> vec3<f32> {
     return color_in(scene_color, pixel);
 }
 
-// The distant light along a ray that meets nothing opaque: the environment, or a body painted
-// earlier. Bodies are in no depth texture that could be searched; if the colour has changed where
-// the ray passes the next body's centre, that colour is used.
+// The distant light along a ray that meets nothing opaque: the environment, or a surface painted
+// earlier. Surfaces are in no depth texture that could be searched; if the colour has changed where
+// the ray passes the next surface's centre, that colour is used.
 fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
 #ifdef SEVERAL
-    let t = dot(body.behind.xyz - position, direction);
+    let t = dot(surface.behind.xyz - position, direction);
     let device = device_from_view(position + t * direction);
-    let is_there = (body.behind.w > 0.0) & (t > 0.0);
+    let is_there = (surface.behind.w > 0.0) & (t > 0.0);
     if is_there && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
         let pixel = pixel_from_ndc(device.xy);
         let painted = color_at(pixel);
@@ -81,7 +81,7 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
         end = clip.xyz / clip.w;
     } else {
         // Parallel to the screen, towards the eye, or orthographic: as far as the depths go.
-        let far = 1e3 * (abs(position.z) + body.radius);
+        let far = 1e3 * (abs(position.z) + surface.radius);
         let t = select(far, start.z / -clip.z, clip.z < 0.0 && clip.w >= 0.0);
         end = device_from_view(position + t * direction);
         if clip.w < 0.0 {
@@ -109,9 +109,8 @@ fn way_of(track: Track) -> Way {
 }
 
 fn scene_depth_on(way: Way, s: f32) -> f32 {
-    let high = vec2<i32>(view.main_pass_viewport.xy + view.main_pass_viewport.zw) - 1;
-    let low = vec2<i32>(view.main_pass_viewport.xy);
-    return nearest_scene_depth(clamp(vec2<i32>(way.start.xy + s * way.step.xy), low, high));
+    let pixel = vec2<i32>(way.start.xy + s * way.step.xy);
+    return nearest_scene_depth(clamp(pixel, vec2(0), vec2<i32>(frame.view_size) - 1));
 }
 
 // How far behind the scene the ray is at `s`, in device depth (reverse z).
@@ -149,7 +148,7 @@ fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
         if at.y > 0.0 {
             let map = depth_map(track.start.xy);
             let entry = view_depth(map, way.start.z + before.x * way.step.z);
-            let slack = 4.0 * body.radius + 0.05 * entry;
+            let slack = 4.0 * surface.radius + 0.05 * entry;
             // It is met if it lies within the step, not if it covers the ray from nearer the eye.
             let scene_depth = at.y + way.start.z + at.x * way.step.z;
             if view_depth(map, scene_depth) >= entry - slack {
@@ -164,7 +163,7 @@ fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
 }
 
 // Light from the liquid, and background light transmitted through it.
-fn light(pixel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
+fn light(texel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
     let uv = unpack2x16unorm(exit.x);
     let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
     var behind: vec3<f32>;
@@ -174,7 +173,11 @@ fn light(pixel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
         let start = view_from_device(ndc, bitcast<f32>(exit.y));
         behind = background(start, decode_normal(unpack2x16snorm(exit.z)));
     }
-    return textureLoad(radiance, pixel, 0).rgb + textureLoad(transmission, pixel, 0).rgb * behind;
+    return textureLoad(radiance, texel, 0).rgb + transmitted_at(texel) * behind;
+}
+
+fn transmitted_at(texel: vec2<i32>) -> vec3<f32> {
+    return vec3(textureLoad(radiance, texel, 0).a, textureLoad(transmission, texel, 0).rg);
 }
 
 fn max3(v: vec3<f32>) -> f32 {
@@ -183,23 +186,24 @@ fn max3(v: vec3<f32>) -> f32 {
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let pixel = vec2<i32>(position.xy);
-    let exit = textureLoad(exits, pixel, 0);
+    let pixel = vec2<i32>(pixel_from_camera(position));
+    let texel = texel_at(pixel);
+    let exit = textureLoad(exits, texel, 0);
     if (exit.w & THERE) == 0u {
         discard;
     }
-    let bulk = textureLoad(bulk_layers, pixel, 0).xy;
-    let spray = textureLoad(spray_layers, pixel, 0).xy;
+    let bulk = textureLoad(bulk_layers, texel, 0).xy;
+    let spray = textureLoad(spray_layers, texel, 0).xy;
     let front = max(bulk.x, spray.x);
 
     var out: Output;
 #ifdef DENSE
-    if max3(textureLoad(transmission, pixel, 0).rgb) > 0.5 {
+    if max3(transmitted_at(texel)) > 0.5 {
         discard;
     }
 #endif
 #ifndef DEPTH_ALONE
-    out.color = vec4(light(pixel, exit), 1.0);
+    out.color = vec4(light(texel, exit), 1.0);
 #endif
     out.depth = front;
     if front >= INSIDE_FRONT {

@@ -1,274 +1,168 @@
-//! The liquid over the opaque scene, bodies from far to near.
+//! The liquid over the opaque scene, surfaces from far to near.
+
+mod pipeline;
+mod scene;
 
 use bevy::{
-    asset::load_embedded_asset,
-    core_pipeline::{FullscreenShader, core_3d::CORE_3D_DEPTH_FORMAT},
+    asset::embedded_asset,
     prelude::*,
     render::{
-        diagnostic::RecordDiagnostics,
-        render_phase::TrackedRenderPass,
-        render_resource::{
-            BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction,
-            DepthStencilState, Extent3d, MultisampleState, PipelineCache, RenderPassDescriptor,
-            RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderStages,
-            SpecializedRenderPipeline, StoreOp, TextureFormat, TextureSampleType, VertexState,
-            binding_types::{sampler, texture_2d, texture_cube, uniform_buffer},
-        },
+        Render, RenderApp, RenderStartup, RenderSystems,
+        render_resource::{CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
-        texture::CachedTexture,
         view::{ViewDepthTexture, ViewTarget},
     },
-    shader::Shader,
 };
 
+pub(super) use self::pipeline::CompositePipeline;
+#[cfg(all(test, feature = "published"))]
+pub(super) use self::pipeline::{CompositeKey, CompositePart};
+use self::scene::SceneColor;
 use super::{
-    bindings::{common_layout, defs, fragment},
-    bodies::{Body, ViewBodies},
+    frame::{Frame, FrameStartup, Gpu, Group, Input, Kept, Layers, Placeholder, add_stage, timed},
+    lighting::ViewLighting,
+    surface::{Surface, ViewSurfaces},
 };
-use crate::settings::FluidDebugView;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct CompositeKey {
-    pub(crate) debug_view: Option<FluidDebugView>,
-    pub(crate) format: TextureFormat,
-    pub(crate) samples: u32,
-    pub(crate) part: CompositePart,
-    /// Whether there are other bodies, which may be visible through this one.
-    pub(crate) several: bool,
-    /// Whether the thickness shown by a debug view is accumulated.
-    pub(crate) accumulated: bool,
+/// Name of the pass's time span.
+pub(crate) const SPAN: &str = "fluid_composite";
+
+/// What refraction has left on a surface.
+#[derive(Component, Default)]
+pub(super) struct Composite(Group);
+
+pub(super) fn plugin(app: &mut App) {
+    embedded_asset!(app, "composite.wgsl");
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .add_systems(RenderStartup, pipeline::init_pipeline.after(FrameStartup))
+        .add_systems(
+            Render,
+            prepare_groups.in_set(RenderSystems::PrepareBindGroups),
+        );
+    add_stage::<CompositePipeline>(render_app);
+    let world = render_app.world_mut();
+    world.register_required_components::<Surface, Composite>();
+    scene::plugin(render_app);
 }
 
-impl CompositeKey {
-    /// Whether a pipeline of this key can draw where `other` is wanted: to the same target, with the
-    /// same bind groups.
-    pub(crate) fn fits(&self, other: &Self) -> bool {
-        (self.debug_view, self.format, self.samples)
-            == (other.debug_view, other.format, other.samples)
-    }
-}
-
-/// What is written. If bodies wrote their depth at once, a body painted later would be cut off
-/// where it is behind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum CompositePart {
-    /// Light and depth: the only body, or a debug view.
-    Whole,
-    /// Light alone.
-    Light,
-    /// Depth alone, once all bodies' light is there.
-    Depth,
-    /// Depth alone, where more than half of the background is hidden: transparent objects drawn
-    /// later are hidden by dense smoke, but not by thin smoke.
-    DenseDepth,
-}
-
-impl CompositePart {
-    fn depth(self) -> bool {
-        self != Self::Light
-    }
-
-    fn light(self) -> bool {
-        matches!(self, Self::Whole | Self::Light)
-    }
-}
-
-#[derive(Resource)]
-pub(crate) struct CompositePipeline {
-    fullscreen: VertexState,
-    pub(crate) layout: BindGroupLayoutDescriptor,
-    pub(crate) debug_layout: BindGroupLayoutDescriptor,
-    shader: Handle<Shader>,
-    debug_shader: Handle<Shader>,
-}
-
-pub(crate) fn init_composite_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    fullscreen: Res<FullscreenShader>,
+fn prepare_groups(
+    mut surfaces: Query<(&Layers, &mut Composite)>,
+    pipeline: Res<CompositePipeline>,
+    placeholder: Res<Placeholder>,
+    gpu: Gpu,
 ) {
-    let filtered = || texture_2d(TextureSampleType::Float { filterable: true });
-    let unfiltered = || texture_2d(TextureSampleType::Float { filterable: false });
-    commands.insert_resource(CompositePipeline {
-        fullscreen: fullscreen.to_vertex_state(),
-        layout: BindGroupLayoutDescriptor::new(
-            "fluid_composite_layout",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    texture_cube(TextureSampleType::Float { filterable: true }),
-                    sampler(SamplerBindingType::Filtering),
-                    unfiltered(),
-                    unfiltered(),
-                    texture_2d(TextureSampleType::Uint),
-                    unfiltered(),
-                    unfiltered(),
-                    filtered(),
-                    sampler(SamplerBindingType::Filtering),
-                    filtered(),
-                ),
-            ),
-        ),
-        debug_layout: BindGroupLayoutDescriptor::new(
-            "fluid_debug_layout",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    unfiltered(),
-                    unfiltered(),
-                    unfiltered(),
-                    unfiltered(),
-                    texture_2d(TextureSampleType::Uint),
-                    uniform_buffer::<Vec4>(true),
-                    unfiltered(),
-                ),
-            ),
-        ),
-        shader: load_embedded_asset!(assets.as_ref(), "composite.wgsl"),
-        debug_shader: load_embedded_asset!(assets.as_ref(), "debug_view.wgsl"),
-    });
-}
-
-impl SpecializedRenderPipeline for CompositePipeline {
-    type Key = CompositeKey;
-
-    fn specialize(&self, key: CompositeKey) -> RenderPipelineDescriptor {
-        let is = |view| key.debug_view == Some(view);
-        let shader_defs = defs([
-            ("BULK_FRONT", is(FluidDebugView::BulkFront)),
-            ("BULK_BACK", is(FluidDebugView::BulkBack)),
-            ("SPRAY_FRONT", is(FluidDebugView::SprayFront)),
-            ("SPRAY_BACK", is(FluidDebugView::SprayBack)),
-            ("NORMALS", is(FluidDebugView::Normals)),
-            ("INTERFACES", is(FluidDebugView::Interfaces)),
-            ("STATUS", is(FluidDebugView::Status)),
-            ("CLASSES", is(FluidDebugView::Classes)),
-            ("THICKNESS", is(FluidDebugView::Thickness)),
-            ("ACCUMULATED", key.accumulated),
-            ("EXIT_RAY", is(FluidDebugView::ExitRay)),
-            ("OVERDRAW", is(FluidDebugView::Overdraw)),
-            ("DEPTH_ALONE", !key.part.light()),
-            ("SEVERAL", key.several),
-            ("DENSE", key.part == CompositePart::DenseDepth),
-        ]);
-        let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
-        let (layout, shader, compare) = match key.debug_view {
-            None => (&self.layout, &self.shader, CompareFunction::GreaterEqual),
-            Some(_) => (
-                &self.debug_layout,
-                &self.debug_shader,
-                CompareFunction::Always,
-            ),
-        };
-        RenderPipelineDescriptor {
-            label: Some("fluid_composite_pipeline".into()),
-            layout: vec![common_layout(), layout.clone()],
-            vertex: self.fullscreen.clone(),
-            depth_stencil: Some(DepthStencilState {
-                format: CORE_3D_DEPTH_FORMAT,
-                // Transparent objects and later passes are depth-tested against the liquid.
-                depth_write_enabled: Some(key.debug_view.is_none() && key.part.depth()),
-                depth_compare: Some(compare),
-                stencil: default(),
-                bias: default(),
-            }),
-            multisample: MultisampleState {
-                count: key.samples,
-                ..default()
-            },
-            fragment: Some(fragment(shader, shader_defs, formats, None)),
-            ..default()
-        }
+    for (layers, mut composite) in &mut surfaces {
+        let inputs = [
+            Input::texture(layers.radiance.as_ref()),
+            Input::texture(layers.transmission.as_ref()),
+            Input::texture(layers.exits.as_ref()),
+            Input::texture_or(&layers.bulk, &placeholder),
+            Input::texture_or(&layers.spray, &placeholder),
+        ];
+        composite
+            .0
+            .prepare(&gpu, "fluid_composite", &pipeline.layout, &inputs);
     }
 }
 
-/// The pass: all bodies of the view, each composited over the previous ones.
-pub(crate) fn composite(
-    view: ViewQuery<(&ViewTarget, &ViewDepthTexture, &ViewBodies)>,
+type Composited<'a> = (
+    &'a Surface,
+    &'a Frame,
+    &'a Composite,
+    &'a Kept<CompositePipeline>,
+);
+
+/// The pass: all surfaces of the view, each composited over the previous ones.
+pub(super) fn composite(
+    view: ViewQuery<(
+        &ViewTarget,
+        &ViewDepthTexture,
+        &ViewSurfaces,
+        &ViewLighting,
+        &SceneColor,
+    )>,
+    surfaces: Query<Composited>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (target, depth, bodies) = view.into_inner();
-    let recorder = ctx.diagnostic_recorder();
-    let recorder = recorder.as_deref();
-    let span = recorder.time_span(ctx.command_encoder(), "fluid_composite");
-    copy_scene(&mut ctx, target, bodies, &bodies.scene_before);
-    for body in bodies.ready() {
-        let (Some(pipeline), Some(group)) = (
-            cache.get_render_pipeline(body.pipelines.composite),
-            &body.groups.composite,
-        ) else {
-            continue;
-        };
-        copy_scene(&mut ctx, target, bodies, &bodies.scene_color);
-        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-            label: Some("fluid_composite"),
-            color_attachments: &[Some(target.get_color_attachment())],
-            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-            ..default()
-        });
-        paint(&mut pass, body, pipeline, group);
+    let (target, depth, view, lighting, scene) = view.into_inner();
+    let drawn = |&(surface, ..): &Composited| {
+        let variant = surface.drawn.as_ref();
+        variant.is_some_and(|variant| variant.debug_view.is_none())
+    };
+    let surfaces = || surfaces.iter_many(&view.surfaces).filter(drawn);
+    if surfaces().next().is_none() {
+        return;
     }
-    for body in bodies.ready() {
-        let (Some(pipeline), Some(group)) = (
-            body.pipelines
-                .composite_depth
-                .and_then(|id| cache.get_render_pipeline(id)),
-            &body.groups.composite,
-        ) else {
-            continue;
-        };
-        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-            label: Some("fluid_composite_depth"),
-            depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-            ..default()
-        });
-        paint(&mut pass, body, pipeline, group);
-    }
-    span.end(ctx.command_encoder());
+    timed(&mut ctx, SPAN, |ctx| {
+        let mut changed = view.viewport;
+        scene.keep(ctx, target, changed);
+        for surface in surfaces() {
+            let Some(pipelines) = surface.3.drawn(surface.0) else {
+                continue;
+            };
+            // Rays leave the surface's own rectangle, so all that has changed may be needed.
+            scene.copy(ctx, target, changed, &cache);
+            changed = surface.1.camera_rect();
+            let pass = RenderPassDescriptor {
+                label: Some(SPAN),
+                color_attachments: &[Some(target.get_color_attachment())],
+                depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+                ..default()
+            };
+            paint(
+                ctx,
+                pass,
+                surface,
+                pipelines.light,
+                (lighting, scene, target),
+                &cache,
+            );
+        }
+        for surface in surfaces() {
+            let pipelines = surface.3.drawn(surface.0);
+            if let Some(pipeline) = pipelines.and_then(|it| it.depth) {
+                let pass = RenderPassDescriptor {
+                    label: Some("fluid_composite_depth"),
+                    depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+                    ..default()
+                };
+                paint(
+                    ctx,
+                    pass,
+                    surface,
+                    pipeline,
+                    (lighting, scene, target),
+                    &cache,
+                );
+            }
+        }
+    });
 }
 
-fn paint<'a>(
-    pass: &mut TrackedRenderPass<'a>,
-    body: &'a Body,
-    pipeline: &'a RenderPipeline,
-    group: &'a BindGroup,
-) {
-    body.set_scissor(pass);
-    pass.set_render_pipeline(pipeline);
-    body.set_common(pass);
-    if body.debug {
-        pass.set_bind_group(1, group, &[body.depth_range_offset]);
-    } else {
-        pass.set_bind_group(1, group, &[]);
-    }
-    pass.draw(0..3, 0..1);
-}
-
-/// Copies the current colour, so that rays can look it up while the target is written.
-fn copy_scene(
+fn paint(
     ctx: &mut RenderContext,
-    target: &ViewTarget,
-    bodies: &ViewBodies,
-    copy: &Option<CachedTexture>,
+    pass: RenderPassDescriptor,
+    (_, frame, composite, _): Composited,
+    pipeline: CachedRenderPipelineId,
+    (lighting, scene, target): (&ViewLighting, &SceneColor, &ViewTarget),
+    cache: &PipelineCache,
 ) {
-    let Some(copy) = copy else {
+    let (Some(pipeline), Some(group), Some((light, light_offset)), Some(scene)) = (
+        cache.get_render_pipeline(pipeline),
+        composite.0.get(),
+        lighting.get(),
+        scene.group(target),
+    ) else {
         return;
     };
-    // Rays leave the body's own rectangle, so the whole viewport may be needed.
-    let region = bodies.viewport;
-    let mut from = target.main_texture().as_image_copy();
-    from.origin.x = region.min.x;
-    from.origin.y = region.min.y;
-    let mut to = copy.texture.as_image_copy();
-    to.origin = from.origin;
-    ctx.command_encoder().copy_texture_to_texture(
-        from,
-        to,
-        Extent3d {
-            width: region.width(),
-            height: region.height(),
-            depth_or_array_layers: 1,
-        },
-    );
+    let mut pass = ctx.begin_tracked_render_pass(pass);
+    frame.enter(&mut pass, pipeline);
+    pass.set_bind_group(1, group, &[]);
+    pass.set_bind_group(2, light, &light_offset);
+    pass.set_bind_group(3, scene, &[]);
+    frame.draw_tiles(&mut pass);
 }

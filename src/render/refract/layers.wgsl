@@ -1,16 +1,24 @@
 // The four layers and the opaque scene, sampled between pixels.
 #define_import_path bevy_fluid::render::refract::layers
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::frame::{frame, surface}
 #import bevy_fluid::render::functions::{
-    DepthMap, decode_normal, depth_map, depth_slope, nearest_scene_depth, ndc_from_pixel,
+    DepthMap, decode_normal, depth_map, depth_slope, nearest_scene_depth, ndc_from_pixel, texel_at,
 }
 #import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
 
-@group(1) @binding(2) var bulk_layers: texture_2d<f32>;
-@group(1) @binding(3) var bulk_normals: texture_2d<f32>;
-@group(1) @binding(4) var spray_layers: texture_2d<f32>;
-@group(1) @binding(5) var spray_normals: texture_2d<f32>;
+struct Tracing {
+    // Search: evenly spaced samples before the bracket.
+    coarse_samples: u32,
+    // How far behind the liquid an opaque surface is wetted, in view units.
+    contact: f32,
+}
+
+@group(1) @binding(0) var bulk_layers: texture_2d<f32>;
+@group(1) @binding(1) var bulk_normals: texture_2d<f32>;
+@group(1) @binding(2) var spray_layers: texture_2d<f32>;
+@group(1) @binding(3) var spray_normals: texture_2d<f32>;
+@group(1) @binding(5) var<uniform> tracing: Tracing;
 
 const BULK: u32 = 0u;
 const SPRAY: u32 = 1u;
@@ -18,24 +26,21 @@ const FRONT: u32 = 0u;
 const BACK: u32 = 1u;
 
 fn on_screen(pixel: vec2<f32>) -> bool {
-    let uv = (pixel - view.main_pass_viewport.xy) / view.main_pass_viewport.zw;
+    let uv = pixel / frame.view_size;
     return all(uv >= vec2(0.0)) && all(uv < vec2(1.0));
 }
 
 // The point of the screen that is nearest to one outside of it.
 fn clamp_to_view(pixel: vec2<f32>) -> vec2<f32> {
-    let low = view.main_pass_viewport.xy + 0.5;
-    return clamp(pixel, low, low + view.main_pass_viewport.zw - 1.0);
+    return clamp(pixel, vec2(0.5), frame.view_size - 0.5);
 }
 
 fn load_layers(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
-    return select(
-        vec2(NO_FRONT, NO_BACK), texel(kind, pixel), on_screen(vec2<f32>(pixel) + 0.5),
-    );
+    return texel(kind, texel_at(pixel));
 }
 
 fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
-    let encoded = codes(kind, pixel);
+    let encoded = codes(kind, texel_at(pixel));
     // Back normals are stored towards the viewer, like the front's: they are then encoded as
     // precisely.
     return select(-decode_normal(encoded.zw), decode_normal(encoded.xy), side == FRONT);
@@ -43,6 +48,7 @@ fn load_normal(kind: u32, side: u32, pixel: vec2<i32>) -> vec3<f32> {
 
 // The four pixels about a point, in rows from its upper left one, and their bilinear weights.
 struct Quad {
+    // In the textures.
     base: vec2<i32>,
     weights: vec4<f32>,
     // Which of them holds the point.
@@ -53,29 +59,29 @@ struct Quad {
 }
 
 // Loads, not gathers: a texel has both sides at once.
-fn texel(kind: u32, pixel: vec2<i32>) -> vec2<f32> {
+fn texel(kind: u32, at: vec2<i32>) -> vec2<f32> {
 #ifdef BULK_LAYERS
     if kind == BULK {
-        return textureLoad(bulk_layers, pixel, 0).xy;
+        return textureLoad(bulk_layers, at, 0).xy;
     }
 #endif
 #ifdef SPRAY_LAYERS
     if kind == SPRAY {
-        return textureLoad(spray_layers, pixel, 0).xy;
+        return textureLoad(spray_layers, at, 0).xy;
     }
 #endif
     return vec2(NO_FRONT, NO_BACK);
 }
 
-fn codes(kind: u32, pixel: vec2<i32>) -> vec4<f32> {
+fn codes(kind: u32, at: vec2<i32>) -> vec4<f32> {
 #ifdef BULK_LAYERS
     if kind == BULK {
-        return textureLoad(bulk_normals, pixel, 0);
+        return textureLoad(bulk_normals, at, 0);
     }
 #endif
 #ifdef SPRAY_LAYERS
     if kind == SPRAY {
-        return textureLoad(spray_normals, pixel, 0);
+        return textureLoad(spray_normals, at, 0);
     }
 #endif
     return vec4(0.0);
@@ -83,7 +89,8 @@ fn codes(kind: u32, pixel: vec2<i32>) -> vec4<f32> {
 
 fn quad_at(kind: u32, pixel: vec2<f32>) -> Quad {
     let p = pixel - 0.5;
-    let base = vec2<i32>(floor(p));
+    // Beyond the textures: four empty ones of the margin.
+    let base = clamp(vec2<i32>(floor(p)) - frame.origin, vec2(0), frame.size - 2);
     let f = p - floor(p);
     let a = texel(kind, base);
     let b = texel(kind, base + vec2(1, 0));
@@ -106,7 +113,7 @@ fn quad_at(kind: u32, pixel: vec2<f32>) -> Quad {
 fn weights_on(quad: Quad, depths: vec4<f32>, map: DepthMap) -> vec4<f32> {
     let nearest = dot(select(vec4(0.0), depths, quad.nearest), vec4(1.0));
     // Particles apart in device depth, to first order.
-    let apart = 2.0 * body.radius / abs(depth_slope(map, vec2(nearest)).x);
+    let apart = 2.0 * surface.radius / abs(depth_slope(map, vec2(nearest)).x);
     let same = depths > vec4(0.0) & abs(depths - nearest) <= vec4(apart);
     let weights = select(vec4(0.0), quad.weights, same);
     return select(vec4(0.0), weights / max(dot(weights, vec4(1.0)), 1e-20), nearest > 0.0);

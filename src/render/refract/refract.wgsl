@@ -1,15 +1,15 @@
 // Traces each pixel's ray through up to four interfaces.
 
-#import bevy_fluid::render::bindings::body
+#import bevy_fluid::render::frame::surface
 #import bevy_fluid::render::functions::{
     depth_map, device_from_view, encode_normal, farthest_scene_depth, ndc_from_pixel,
-    pixel_from_ndc, view_depth, view_from_device, view_ray,
+    pixel_from_ndc, pixel_from_texture, view_depth, view_from_device, view_ray,
 }
 #import bevy_fluid::render::medium::{reflected, transmitted}
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
 #import bevy_fluid::render::refract::inside::{accumulated_length, medium_source}
 #import bevy_fluid::render::refract::layers::{
-    BACK, BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen,
+    BACK, BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen, tracing,
 }
 #import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
 #import bevy_fluid::render::straight::layered_length
@@ -23,17 +23,18 @@ const INTERFACES: u32 = #{INTERFACES}u;
 // Whether there is a second class to enter.
 const BOTH_CLASSES: bool = #{BOTH_CLASSES};
 #ifdef OPAQUE
-// Nothing is seen through the body.
+// Nothing is seen through the surface.
 const SEEN_THROUGH: bool = false;
 #else
 const SEEN_THROUGH: bool = true;
 #endif
 
 struct Output {
-    // The liquid's own radiance: reflections, highlights, in-scattered light and emission.
+    // The liquid's own radiance (reflections, highlights, in-scattered light, emission), and the
+    // transmitted fraction of the background's red light.
     @location(0) radiance: vec4<f32>,
-    // The transmitted fraction of the background's light.
-    @location(1) transmission: vec4<f32>,
+    // The transmitted fractions of green and blue.
+    @location(1) transmission: vec2<f32>,
     // Where to look for the background: see `pack_exit`.
     @location(2) exit: vec4<u32>,
 }
@@ -64,7 +65,7 @@ fn note(path: ptr<function, Path>, status: u32) {
 fn cross_interface(path: ptr<function, Path>, n: vec3<f32>, entering: bool) -> bool {
     let d = (*path).direction;
     let against = facing(select(-n, n, entering), d);
-    let eta = select(body.refractive_index, 1.0 / body.refractive_index, entering);
+    let eta = select(surface.refractive_index, 1.0 / surface.refractive_index, entering);
     let at = meet(d, against, eta);
     (*path).interfaces += 1u;
     if at.reflectance >= 1.0 {
@@ -86,10 +87,10 @@ fn pixel_of(position: vec3<f32>) -> vec2<f32> {
 // everything behind it.
 fn pass_through(path: ptr<function, Path>, length: f32) {
 #ifdef SOURCE
-    (*path).radiance += (*path).transmission * reflected((*path).source, body.extinction, length);
+    (*path).radiance += (*path).transmission * reflected((*path).source, surface.extinction, length);
 #endif
 #ifdef EXTINCTION
-    (*path).transmission *= transmitted(body.extinction, length);
+    (*path).transmission *= transmitted(surface.extinction, length);
 #endif
 }
 
@@ -99,7 +100,7 @@ fn advance(path: ptr<function, Path>, t: f32) {
 
 // How far behind a liquid's surface an opaque one still counts as wetted by it: no air between.
 fn contact(direction: vec3<f32>, n: vec3<f32>) -> f32 {
-    return body.contact / max(abs(dot(direction, n)), 0.25);
+    return tracing.contact / max(abs(dot(direction, n)), 0.25);
 }
 
 // Searches for an opaque surface up to `t`; if one is met, the path ends there.
@@ -141,7 +142,7 @@ fn in_liquid(kind: u32, position: vec3<f32>) -> bool {
     let z = -position.z;
     let to_back = view_depth(map, depths.y) - z;
     return depths.x > 0.0 && depths.y > 0.0 && z > view_depth(map, depths.x)
-        && to_back > 0.02 * body.radius && (kind == BULK || to_back < 2.0 * body.radius);
+        && to_back > 0.02 * surface.radius && (kind == BULK || to_back < 2.0 * surface.radius);
 }
 
 // Follows the path until the budget is spent or nothing more is met. Every turn looks for one
@@ -219,8 +220,9 @@ fn pack_exit(path: Path) -> vec4<u32> {
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let pixel = vec2<i32>(position.xy);
-    let ndc = ndc_from_pixel(position.xy);
+    let at = pixel_from_texture(position);
+    let pixel = vec2<i32>(at);
+    let ndc = ndc_from_pixel(at);
     let bulk = load_layers(BULK, pixel);
     let spray = load_layers(SPRAY, pixel);
     let front = max(bulk.x, spray.x);
@@ -278,8 +280,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 
     var out: Output;
     // The sun in a smooth surface is brighter than f16 can represent.
-    out.radiance = vec4(min(path.radiance, vec3(MAX_HALF)), 1.0);
-    out.transmission = vec4(path.transmission, 1.0);
+    out.radiance = vec4(min(path.radiance, vec3(MAX_HALF)), path.transmission.r);
+    out.transmission = path.transmission.gb;
     out.exit = pack_exit(path);
     return out;
 }

@@ -1,12 +1,12 @@
 // Finding the next interface along a ray.
 #define_import_path bevy_fluid::render::refract::search
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::frame::surface
 #import bevy_fluid::render::functions::{pixel_from_ndc, view_depth}
 #import bevy_fluid::render::refract::layers::{
-    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at,
+    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at, tracing,
 }
-#import bevy_fluid::render::track::{
+#import bevy_fluid::render::refract::track::{
     Track, device_at, distance_from_s, in_device_depth, s_from_distance, tolerance, track_of, w_at,
 }
 #import bevy_fluid::render::types::{
@@ -172,7 +172,7 @@ const FARTHEST: f32 = 1e30;
 // Expanding steps until the gap changes sign, then `refine`. `guess` is a distance.
 fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
     var b = Bracket(0.0, start, 0.0, start);
-    let coarse = i32(body.coarse_samples);
+    let coarse = i32(tracing.coarse_samples);
     var left = EVALUATIONS + coarse;
     var t = 0.0;
     // As far as twice the guess, evenly.
@@ -254,7 +254,7 @@ fn metres(track: Track, s: f32, gap: Gap) -> f32 {
 fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
     let track = track_of(origin, direction);
     var start = gap_at(to, track, 0.0);
-    var guess = 4.0 * body.radius;
+    var guess = 4.0 * surface.radius;
     if to.leaving && !start.known {
         return Found(STATUS_INVALID, 0.0, start.side);
     }
@@ -264,7 +264,7 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
         let depths = layer_depths(to.kind, asked, track.map);
         let deep = view_depth(track.map, depths.y) - view_depth(track.map, depths.x);
         guess = max(guess, select(0.0, deep, depths.x > 0.0));
-        start.value = min(start.value, -in_device_depth(track, 0.01 * body.radius, track.start.z));
+        start.value = min(start.value, -in_device_depth(track, 0.01 * surface.radius, track.start.z));
     } else if to.leaving && start.value >= -start.near {
         // Thinner than the tolerance.
         return Found(STATUS_HIT, 0.0, start.side);
@@ -297,12 +297,12 @@ fn meets_scene(origin: vec3<f32>, direction: vec3<f32>, t: f32) -> Found {
         return Found(STATUS_NO_BRACKET, t, FRONT);
     }
     var before = start;
-    let skin = in_device_depth(track, 1e-3 * body.radius, track.start.z);
+    let skin = in_device_depth(track, 1e-3 * surface.radius, track.start.z);
     before.value = min(before.value, -skin);
     let found = refine(to, track, Bracket(0.0, before, s, end), EVALUATIONS);
     let at = s_from_distance(track, found.t);
     let gap = gap_at(to, track, at);
-    let near = in_device_depth(track, body.radius, device_at(track, at).z);
+    let near = in_device_depth(track, surface.radius, device_at(track, at).z);
     let met = gap.known && abs(gap.value) <= near;
     return Found(select(STATUS_NO_BRACKET, STATUS_HIT, met), found.t, FRONT);
 }

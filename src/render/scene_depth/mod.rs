@@ -1,119 +1,149 @@
-//! The opaque scene's depth, resolved once per pixel because many rays sample it.
+//! The opaque scene's depth in multisampled views, resolved once per pixel because many rays
+//! sample it.
 
 use bevy::{
-    asset::load_embedded_asset,
-    core_pipeline::FullscreenShader,
+    app::SubApp,
+    asset::{embedded_asset, load_embedded_asset},
+    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
     prelude::*,
     render::{
+        Render, RenderApp, RenderStartup, RenderSystems,
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, ShaderStages, TextureFormat, TextureView,
-            binding_types::{texture_depth_2d, texture_depth_2d_multisampled},
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
+            PipelineCache, RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
+            binding_types::{texture_depth_2d_multisampled, uniform_buffer},
         },
-        renderer::{RenderContext, RenderDevice, ViewQuery},
+        renderer::{RenderContext, ViewQuery},
     },
 };
 
 use super::{
-    bindings::{cleared, defs, fragment},
-    bodies::ViewBodies,
+    frame::{
+        Frame, Gpu, GpuFrame, Group, Input, SCENE_DEPTH_FORMAT, SceneDepth, UniformArray, cleared,
+        pipelines::fragment,
+    },
+    surface::{Surface, SurfaceSystems, ViewSurfaces},
 };
 
-/// (nearest, farthest) of a pixel's samples, in device depth.
-pub(crate) const SCENE_DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
+/// Name of the pass's time span.
+pub(crate) const SPAN: &str = "fluid_scene_depth";
 
-/// For views without and with multisampling.
 #[derive(Resource)]
-pub(crate) struct SceneDepthPipelines {
-    layouts: [BindGroupLayoutDescriptor; 2],
-    pipelines: [CachedRenderPipelineId; 2],
+pub(super) struct ResolvePipeline {
+    layout: BindGroupLayoutDescriptor,
+    id: CachedRenderPipelineId,
 }
 
-pub(crate) fn init_scene_depth_pipelines(
+#[derive(Component, Default)]
+pub(super) struct ResolveGroup(Group);
+
+pub(super) fn plugin(app: &mut App) {
+    embedded_asset!(app, "resolve.wgsl");
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    add_systems(render_app);
+}
+
+fn add_systems(render_app: &mut SubApp) {
+    render_app
+        .add_systems(RenderStartup, init_pipeline)
+        .add_systems(
+            Render,
+            (
+                wait_for_pipeline.in_set(SurfaceSystems::Request),
+                prepare_groups.in_set(RenderSystems::PrepareBindGroups),
+            ),
+        );
+    let world = render_app.world_mut();
+    world.register_required_components::<ViewSurfaces, ResolveGroup>();
+}
+
+fn init_pipeline(
     mut commands: Commands,
     assets: Res<AssetServer>,
     fullscreen: Res<FullscreenShader>,
     cache: Res<PipelineCache>,
 ) {
-    let layouts = [false, true].map(|multisampled| {
-        let texture = if multisampled {
-            texture_depth_2d_multisampled()
-        } else {
-            texture_depth_2d()
-        };
-        BindGroupLayoutDescriptor::new(
-            "fluid_scene_depth_layout",
-            &BindGroupLayoutEntries::single(ShaderStages::FRAGMENT, texture),
-        )
-    });
+    let layout = BindGroupLayoutDescriptor::new(
+        "fluid_scene_depth_layout",
+        &BindGroupLayoutEntries::sequential(
+            ShaderStages::FRAGMENT,
+            (
+                texture_depth_2d_multisampled(),
+                uniform_buffer::<GpuFrame>(true),
+            ),
+        ),
+    );
     let shader = load_embedded_asset!(assets.as_ref(), "resolve.wgsl");
-    let pipelines = [false, true].map(|multisampled| {
-        cache.queue_render_pipeline(RenderPipelineDescriptor {
-            label: Some("fluid_scene_depth_pipeline".into()),
-            layout: vec![layouts[usize::from(multisampled)].clone()],
-            vertex: fullscreen.to_vertex_state(),
-            fragment: Some(fragment(
-                &shader,
-                defs([("MULTISAMPLED", multisampled)]),
-                &[SCENE_DEPTH_FORMAT],
-                None,
-            )),
-            ..default()
-        })
+    let id = cache.queue_render_pipeline(RenderPipelineDescriptor {
+        label: Some("fluid_scene_depth_pipeline".into()),
+        layout: vec![layout.clone()],
+        vertex: fullscreen.to_vertex_state(),
+        fragment: Some(fragment(&shader, vec![], &[SCENE_DEPTH_FORMAT], None)),
+        ..default()
     });
-    commands.insert_resource(SceneDepthPipelines { layouts, pipelines });
+    commands.insert_resource(ResolvePipeline { layout, id });
 }
 
-impl SceneDepthPipelines {
-    pub(crate) fn pipeline<'a>(
-        &self,
-        cache: &'a PipelineCache,
-        multisampled: bool,
-    ) -> Option<&'a RenderPipeline> {
-        cache.get_render_pipeline(self.pipelines[usize::from(multisampled)])
+fn wait_for_pipeline(
+    mut surfaces: Query<&mut Surface>,
+    pipeline: Res<ResolvePipeline>,
+    cache: Res<PipelineCache>,
+) {
+    if cache.get_render_pipeline(pipeline.id).is_some() {
+        return;
     }
-
-    pub(crate) fn bind_group(
-        &self,
-        device: &RenderDevice,
-        cache: &PipelineCache,
-        multisampled: bool,
-        depth: &TextureView,
-    ) -> BindGroup {
-        device.create_bind_group(
-            "fluid_scene_depth",
-            &cache.get_bind_group_layout(&self.layouts[usize::from(multisampled)]),
-            &BindGroupEntries::single(depth),
-        )
+    for mut surface in &mut surfaces {
+        surface.waiting |= surface.wanted.samples > 1;
     }
 }
 
-/// The pass: once a view, if it sees a body.
-pub(crate) fn scene_depth(
-    view: ViewQuery<&ViewBodies>,
-    pipelines: Res<SceneDepthPipelines>,
+fn prepare_groups(
+    mut views: Query<(&ViewSurfaces, &ViewPrepassTextures, &mut ResolveGroup)>,
+    pipeline: Res<ResolvePipeline>,
+    frames: Res<UniformArray<GpuFrame>>,
+    gpu: Gpu,
+) {
+    for (view, prepass, mut group) in &mut views {
+        if let Some(depth) = prepass.depth_view().filter(|_| view.samples > 1) {
+            let inputs = [Input::view(depth), frames.input()];
+            group
+                .0
+                .prepare(&gpu, "fluid_scene_depth", &pipeline.layout, &inputs);
+        }
+    }
+}
+
+/// The pass: once a view, if it sees a surface.
+pub(super) fn scene_depth(
+    view: ViewQuery<(&ViewSurfaces, &SceneDepth, &ResolveGroup)>,
+    frames: Query<&Frame>,
+    pipeline: Res<ResolvePipeline>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let view = view.into_inner();
-    let pipeline = pipelines.pipeline(&cache, view.multisampled);
-    let (Some(pipeline), Some(group)) = (pipeline, &view.scene_depth_group) else {
+    let (view, scene_depth, group) = view.into_inner();
+    // Any surface's frame tells where the view is.
+    let (Some(frame), Some(target), Some(group), Some(pipeline)) = (
+        frames.iter_many(&view.surfaces).next(),
+        &scene_depth.resolved,
+        group.0.get(),
+        cache.get_render_pipeline(pipeline.id),
+    ) else {
         return;
     };
     let recorder = ctx.diagnostic_recorder();
     let recorder = recorder.as_deref();
     let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-        label: Some("fluid_scene_depth"),
-        color_attachments: &[Some(cleared(&view.scene_depth.default_view, [0.0; 4]))],
+        label: Some(SPAN),
+        color_attachments: &[cleared(target, [0.0; 4])],
         ..default()
     });
-    let span = recorder.pass_span(&mut pass, "fluid_scene_depth");
-    let URect { min, max } = view.viewport;
-    pass.set_scissor_rect(min.x, min.y, max.x - min.x, max.y - min.y);
+    let span = recorder.pass_span(&mut pass, SPAN);
     pass.set_render_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
+    pass.set_bind_group(0, group, &[frame.screen()]);
     pass.draw(0..3, 0..1);
     span.end(&mut pass);
 }

@@ -7,7 +7,7 @@
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     if !any(window.valid) {
         return window.center;
     }

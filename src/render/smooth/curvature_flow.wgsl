@@ -1,23 +1,23 @@
 // One step of curvature flow: van der Laan, Green & Sainz, "Screen Space Fluid Rendering with
 // Curvature Flow", 2009. Depth moves along the view by its mean curvature.
 
-#import bevy_fluid::render::bindings::{body, view}
+#import bevy_fluid::render::frame::{frame, view}
 #import bevy_fluid::render::functions::device_depth
 #import bevy_fluid::render::smooth::window::{
-    Window, accept, raw_tap_at, valid_layers, view_depths, window_at,
+    Window, accept, raw_tap_at, smoothing, valid_layers, view_depths, window_at,
 }
 
 // View depths beside the centre; across a step or a silhouette the surface goes on level.
 fn depth_at(window: Window, offset: vec2<i32>) -> vec2<f32> {
     let value = raw_tap_at(window, offset);
     let z = view_depths(window.map, value.xy);
-    let same = valid_layers(value.xy) & abs(z - window.depth) <= vec2(body.range);
+    let same = valid_layers(value.xy) & abs(z - window.depth) <= vec2(smoothing.range);
     return select(window.depth, z, same);
 }
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     if !any(window.valid) {
         return window.center;
     }
@@ -37,7 +37,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     // C_x, C_y of the paper: extent of a pixel at depth 1.
     // A mirrored view has no negative extents.
     let focal = abs(vec2(view.clip_from_view[0][0], view.clip_from_view[1][1]));
-    let c = 2.0 / (view.main_pass_viewport.zw * focal);
+    let c = 2.0 / (frame.view_size * focal);
     let cx2 = c.x * c.x;
     let cy2 = c.y * c.y;
     // A pixel grows with depth in perspective only.
@@ -51,7 +51,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let h = (c.y * ex + c.x * ey) / (2.0 * max(d, vec2(1e-30)) * sqrt(max(d, vec2(1e-30))));
     // The paper's curvature is taken by the pixel: per metre it is h over the pixel's footprint,
     // and the steps are in units of that footprint squared, where an explicit flow is stable.
-    let moved = z - body.flow_step * h * 0.5 * (c.x + c.y) * s;
+    let moved = z - smoothing.flow_step * h * 0.5 * (c.x + c.y) * s;
     let fitted = vec2(device_depth(window.map, moved.x), -device_depth(window.map, moved.y));
     return vec4(accept(window, fitted, vec2(true)), 0.0, 0.0);
 }

@@ -2,10 +2,10 @@
 // Screen-Space Fluid Rendering", 2018. Taps much nearer than the centre count for nothing, taps
 // much farther are drawn up to just behind it; the range widens as taps prove to belong.
 
-#import bevy_fluid::render::bindings::body
+#import bevy_fluid::render::frame::surface
 #import bevy_fluid::render::functions::device_depth
 #import bevy_fluid::render::smooth::window::{
-    accept, edge_weight, raw_tap_at, valid_layers, view_depths, window_at,
+    accept, edge_weight, raw_tap_at, smoothing, valid_layers, view_depths, window_at,
 }
 
 struct Range {
@@ -18,13 +18,13 @@ struct Range {
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     if !any(window.valid) {
         return window.center;
     }
     // A back is viewed from behind: nearer and farther are swapped.
     let towards = vec2(1.0, -1.0);
-    let delta = vec2(body.range);
+    let delta = vec2(smoothing.range);
     var range = Range(delta, delta, vec2(1.0), vec2(0.0));
     // σ is half of the half window.
     let falloff = 2.0 / (window.half_taps * window.half_taps);
@@ -38,7 +38,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
             let near_ok = away >= -range.nearer;
             let far_ok = away <= range.farther;
             let counts = there & near_ok;
-            let drawn_up = select(vec2(body.radius), away, far_ok);
+            let drawn_up = select(vec2(surface.radius), away, far_ok);
             range.total += select(vec2(0.0), vec2(edge), counts);
             range.sum += select(vec2(0.0), edge * towards * drawn_up, counts);
             let belongs = counts & far_ok;

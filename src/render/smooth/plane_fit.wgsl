@@ -6,7 +6,11 @@
 #import bevy_fluid::render::smooth::window::{Tap, Window, accept, edge_weight, tap_at, window_at}
 
 struct Output {
+#ifdef TO_SLOPES
+    @location(0) layers: vec4<u32>,
+#else
     @location(0) layers: vec4<f32>,
+#endif
 #ifdef NORMALS
     @location(1) normals: vec4<f32>,
 #endif
@@ -23,7 +27,7 @@ fn encode_normals(window: Window, layers: vec2<f32>, slope_x: vec2<f32>, slope_y
 #ifdef WHOLE_WINDOW
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     var out: Output;
     out.layers = vec4(window.center.xy, 0.0, 0.0);
     if !any(window.valid) {
@@ -85,12 +89,22 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 #endif
 
 #ifdef LINE
+#ifdef TO_SLOPES
+fn output(layers: vec4<f32>) -> vec4<u32> {
+    return bitcast<vec4<u32>>(layers);
+}
+#else
+fn output(layers: vec4<f32>) -> vec4<f32> {
+    return layers;
+}
+#endif
+
 // Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it.
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     var out: Output;
-    out.layers = vec4(window.center.xy, 0.0, 0.0);
+    out.layers = output(vec4(window.center.xy, 0.0, 0.0));
     if !any(window.valid) {
         return out;
     }
@@ -135,7 +149,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     out.layers = vec4(layers, 0.0, 0.0);
     out.normals = encode_normals(window, layers, across / total, per_pixel);
 #else
-    out.layers = vec4(layers, per_pixel);
+    out.layers = output(vec4(layers, per_pixel));
 #endif
     return out;
 }

@@ -3,7 +3,7 @@
 #import bevy_fluid::render::functions::{
     device_from_view, encode_normal, normal_from_slope, view_from_device, view_ray,
 }
-#import bevy_fluid::render::bindings::view
+#import bevy_fluid::render::frame::frame
 #import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
 
@@ -121,7 +121,7 @@ fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position.xy);
+    let window = window_at(position);
     var out: Output;
     out.layers = vec4(window.center.xy, 0.0, 0.0);
     if !any(window.valid) {
@@ -129,7 +129,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
     let front_origin = view_from_device(window.ndc, window.center.x);
     let back_origin = view_from_device(window.ndc, -window.center.y);
-    let ndc_per_pixel = vec2(2.0, -2.0) / view.main_pass_viewport.zw * f32(window.spacing);
+    let ndc_per_pixel = vec2(2.0, -2.0) / frame.view_size * f32(window.spacing);
     var front: Moments;
     var back: Moments;
     for (var j = -#{HALF_TAPS}; j <= #{HALF_TAPS}; j += 1) {

@@ -1,13 +1,26 @@
 // The window of a smoothing pass: taps spread over the projected particle radius.
 #define_import_path bevy_fluid::render::smooth::window
 
-#import bevy_fluid::render::bindings::body
+#import bevy_fluid::render::frame::surface
 #import bevy_fluid::render::functions::{
-    DepthMap, depth_map, depth_slope, has_back, has_front, ndc_from_pixel, pixels_per_metre, view_depth,
-    view_from_device,
+    DepthMap, depth_map, depth_slope, has_back, has_front, ndc_from_pixel,
+    pixel_from_texture, pixels_per_metre, view_depth, view_from_device,
 }
 #import bevy_fluid::render::slopes::layers_at
 #import bevy_fluid::render::types::INSIDE_FRONT
+
+struct Smoothing {
+    // Half window in particle radii; 0: in pixels, one per tap.
+    window_radii: f32,
+    // Depth difference of weight exp(-1).
+    range: f32,
+    // Largest shift in depth.
+    bound: f32,
+    // Curvature flow: time step, pixels squared.
+    flow_step: f32,
+}
+
+@group(1) @binding(1) var<uniform> smoothing: Smoothing;
 
 // Pixels between taps at the most: beyond it the window stops growing.
 const MAX_SPACING: i32 = 16;
@@ -42,21 +55,22 @@ fn view_depths(map: DepthMap, value: vec2<f32>) -> vec2<f32> {
     return vec2(view_depth(map, value.x), view_depth(map, -value.y));
 }
 
-fn window_at(position: vec2<f32>) -> Window {
+fn window_at(position: vec4<f32>) -> Window {
     var out: Window;
-    out.pixel = vec2<i32>(position);
-    out.ndc = ndc_from_pixel(position);
+    let at = pixel_from_texture(position);
+    out.pixel = vec2<i32>(at);
+    out.ndc = ndc_from_pixel(at);
     out.map = depth_map(out.ndc);
     out.center = layers_at(out.pixel);
     out.valid = valid_layers(out.center.xy);
     out.depth = view_depths(out.map, out.center.xy);
-    out.steepness = depth_slope(out.map, abs(out.center.xy)) / body.range;
+    out.steepness = depth_slope(out.map, abs(out.center.xy)) / smoothing.range;
     let d = select(-out.center.y, out.center.x, out.valid.x);
     let scale = pixels_per_metre(view_from_device(out.ndc, d));
     let half_taps = f32(#{HALF_TAPS});
-    let half_width = max(body.window_radii * body.radius * scale, 1.0);
+    let half_width = max(smoothing.window_radii * surface.radius * scale, 1.0);
     let spacing = clamp(i32(ceil(half_width / half_taps)), 1, MAX_SPACING);
-    let in_radii = body.window_radii > 0.0;
+    let in_radii = smoothing.window_radii > 0.0;
     out.spacing = select(1, spacing, in_radii);
     out.half_taps = select(half_taps, min(half_width / f32(spacing), half_taps), in_radii);
     return out;
@@ -66,10 +80,10 @@ fn window_at(position: vec2<f32>) -> Window {
 // window grows by a pixel.
 fn edge_weight(window: Window, tap: i32) -> f32 {
     let faded = clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
-    return select(1.0, faded, body.window_radii > 0.0);
+    return select(1.0, faded, smoothing.window_radii > 0.0);
 }
 
-// A tap's values, nothing outside of the viewport.
+// A tap's values.
 fn raw_tap_at(window: Window, offset: vec2<i32>) -> vec4<f32> {
     return layers_at(window.pixel + offset * window.spacing);
 }
@@ -90,7 +104,7 @@ fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
 // The new layers, except where the fit went too far, was degenerate or there was nothing to fit.
 fn accept(window: Window, fitted: vec2<f32>, good: vec2<bool>) -> vec2<f32> {
     let moved = abs(view_depths(window.map, fitted) - window.depth);
-    let near_enough = moved <= vec2(body.bound);
+    let near_enough = moved <= vec2(smoothing.bound);
     let in_range = vec2(fitted.x > 0.0 && fitted.x < INSIDE_FRONT, fitted.y < 0.0 && fitted.y >= -1.0);
     let out = select(window.center.xy, fitted, window.valid & good & near_enough & in_range);
     // Fitted each on its own, front and back of a thin sheet may pass each other: no thickness

@@ -2,32 +2,40 @@
 
 use bevy::{
     prelude::*,
-    render::{
-        render_resource::PipelineCache,
-        renderer::{RenderContext, ViewQuery},
-    },
+    render::renderer::{RenderContext, ViewQuery},
 };
 
-use super::{super::extract::GpuSplats, Class, SplatSum, SplatView};
+use super::{
+    super::{
+        frame::{
+            Frame, Kept, Layers,
+            splats::{Class, Splats},
+        },
+        surface::{Surface, ViewSurfaces},
+    },
+    pipeline::SplatPipeline,
+};
 
-/// The pass: counts the splats that the layers of all bodies are made of.
-pub(crate) fn overdraw(
-    view: ViewQuery<SplatView>,
-    fluids: Query<&'static GpuSplats>,
-    cache: Res<PipelineCache>,
+/// Counts the splats that the layers of all surfaces are made of.
+pub(in super::super) fn overdraw(
+    view: ViewQuery<&ViewSurfaces>,
+    surfaces: Query<(&Surface, &Frame, &Layers, &Kept<SplatPipeline>)>,
+    splats: Splats,
     mut ctx: RenderContext,
 ) {
-    let view = view.into_inner();
-    if view.1.ready().all(|body| body.layers.overdraw.is_none()) {
-        return;
+    for (surface, frame, layers, pipeline) in surfaces.iter_many(&view.into_inner().surfaces) {
+        let pipelines = pipeline.drawn(surface);
+        if let Some(pipeline) = pipelines.and_then(|pipelines| pipelines.overdraw) {
+            let classes = [Class::Bulk, Class::Spray];
+            let surface = (surface, frame);
+            splats.sum(
+                &mut ctx,
+                "fluid_overdraw",
+                surface,
+                &layers.overdraw,
+                pipeline,
+                &classes,
+            );
+        }
     }
-    let sum = SplatSum {
-        label: "fluid_overdraw",
-        fluids: &fluids,
-        cache: &cache,
-        classes: &[Class::Bulk, Class::Spray],
-    };
-    sum.draw(view, &mut ctx, |body| {
-        Some((body.layers.overdraw.as_ref()?, body.pipelines.overdraw?))
-    });
 }

@@ -1,7 +1,7 @@
 // Ellipsoids into the depth layers of their class.
 
-#import bevy_fluid::render::functions::{farthest_scene_depth, has_back}
-#import bevy_fluid::render::splat::ellipsoid::{EllipsoidVertex, intersect, place}
+#import bevy_fluid::render::functions::{farthest_scene_depth, pixel_from_texture}
+#import bevy_fluid::render::ellipsoid::{EllipsoidVertex, intersect, place}
 #import bevy_fluid::render::types::NO_FRONT
 
 @vertex
@@ -14,7 +14,8 @@ fn vertex(
 
 // A front behind the opaque scene is hidden and left out; the back is kept, because refracted rays
 // that pass the opaque thing must still find it.
-fn visible_front(front: f32, pixel: vec2<f32>) -> f32 {
+fn visible_front(front: f32, position: vec4<f32>) -> f32 {
+    let pixel = pixel_from_texture(position);
     return select(NO_FRONT, front, front >= farthest_scene_depth(vec2<i32>(pixel)));
 }
 
@@ -25,7 +26,7 @@ fn fragment(in: EllipsoidVertex) -> @location(0) vec2<f32> {
     if !found.hit {
         discard;
     }
-    return vec2(visible_front(found.layers.x, in.position.xy), found.layers.y);
+    return vec2(visible_front(found.layers.x, in.position), found.layers.y);
 }
 #endif
 
@@ -46,7 +47,7 @@ fn fragment(in: EllipsoidVertex) -> @builtin(frag_depth) f32 {
     if !found.hit {
         discard;
     }
-    return visible_front(found.layers.x, in.position.xy);
+    return visible_front(found.layers.x, in.position);
 }
 #endif
 

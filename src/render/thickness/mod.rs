@@ -1,39 +1,61 @@
-//! The accumulated path length through bodies without refraction.
+//! The accumulated path length through surfaces without refraction.
 
 use bevy::{
-    asset::load_embedded_asset,
+    asset::{embedded_asset, load_embedded_asset},
     prelude::*,
     render::{
+        RenderApp, RenderStartup,
         render_resource::{
-            BindGroupLayoutDescriptor, PipelineCache, RenderPipelineDescriptor,
-            SpecializedRenderPipeline, TextureFormat, VertexState,
+            CachedRenderPipelineId, RenderPipelineDescriptor, SpecializedRenderPipeline,
+            TextureFormat,
         },
         renderer::{RenderContext, ViewQuery},
     },
-    shader::Shader,
 };
 
 use super::{
-    bindings::{SUM_BLEND, common_layout, defs, fragment},
-    extract::GpuSplats,
-    splat::{Class, SPLAT_QUAD, SplatPipeline, SplatSum, SplatView},
+    frame::{
+        Frame, FrameLayout, FrameStartup, Kept, Layers, Stage, add_stage,
+        pipelines::{SUM_BLEND, defs, fragment},
+        splats::{Class, SplatLayouts, Splats, splat_pipeline},
+        support::FluidSupport,
+        timed,
+    },
+    surface::{Surface, Variant, ViewSurfaces},
 };
 
+/// Name of the pass's time span.
+pub(crate) const SPAN: &str = "fluid_thickness";
+
 #[derive(Resource)]
-pub(crate) struct ThicknessPipeline {
+pub(super) struct ThicknessPipeline {
+    frame: FrameLayout,
+    splats: SplatLayouts,
+    format: TextureFormat,
     shader: Handle<Shader>,
-    splats: BindGroupLayoutDescriptor,
 }
 
-/// Needs the layout of the splats.
-pub(crate) fn init_thickness_pipeline(
+pub(super) fn plugin(app: &mut App) {
+    embedded_asset!(app, "thickness.wgsl");
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app.add_systems(RenderStartup, init_pipeline.after(FrameStartup));
+    add_stage::<ThicknessPipeline>(render_app);
+}
+
+fn init_pipeline(
     mut commands: Commands,
     assets: Res<AssetServer>,
-    splat: Res<SplatPipeline>,
+    frame: Res<FrameLayout>,
+    splats: Res<SplatLayouts>,
+    support: Res<FluidSupport>,
 ) {
     commands.insert_resource(ThicknessPipeline {
+        frame: frame.clone(),
+        splats: splats.clone(),
+        format: support.thickness_format,
         shader: load_embedded_asset!(assets.as_ref(), "thickness.wgsl"),
-        splats: splat.fluid_layout.clone(),
     });
 }
 
@@ -44,41 +66,47 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
     fn specialize(&self, format: TextureFormat) -> RenderPipelineDescriptor {
         // Path lengths are in metres, which needs view space.
         let shader_defs = defs([("VIEW_SPACE", true)]);
-        RenderPipelineDescriptor {
-            label: Some("fluid_thickness_pipeline".into()),
-            layout: vec![common_layout(), self.splats.clone()],
-            vertex: VertexState {
-                shader: self.shader.clone(),
-                shader_defs: shader_defs.clone(),
-                entry_point: Some("vertex".into()),
-                buffers: vec![],
-            },
-            primitive: SPLAT_QUAD,
-            fragment: Some(fragment(
-                &self.shader,
-                shader_defs,
-                &[format],
-                Some(SUM_BLEND),
-            )),
-            ..default()
-        }
+        let label = "fluid_thickness_pipeline";
+        let sum = fragment(
+            &self.shader,
+            shader_defs.clone(),
+            &[format],
+            Some(SUM_BLEND),
+        );
+        splat_pipeline(label, &self.frame, &self.splats, [], shader_defs, sum)
     }
 }
 
-/// The pass: all bodies that need it.
-pub(crate) fn thickness(
-    view: ViewQuery<SplatView>,
-    fluids: Query<&'static GpuSplats>,
-    cache: Res<PipelineCache>,
+impl Stage for ThicknessPipeline {
+    type Pipelines = Option<CachedRenderPipelineId>;
+
+    fn pipelines(
+        &self,
+        variant: &Variant,
+        mut request: impl FnMut(TextureFormat) -> CachedRenderPipelineId,
+    ) -> Option<CachedRenderPipelineId> {
+        variant.plan.accumulated.then(|| request(self.format))
+    }
+
+    fn ids(pipeline: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
+        pipeline.iter().copied()
+    }
+}
+
+/// The pass: all surfaces that need it.
+pub(super) fn thickness(
+    view: ViewQuery<&ViewSurfaces>,
+    surfaces: Query<(&Surface, &Frame, &Layers, &Kept<ThicknessPipeline>)>,
+    splats: Splats,
     mut ctx: RenderContext,
 ) {
-    let sum = SplatSum {
-        label: "fluid_thickness",
-        fluids: &fluids,
-        cache: &cache,
-        classes: &[Class::All],
-    };
-    sum.draw(view.into_inner(), &mut ctx, |body| {
-        Some((body.layers.thickness.as_ref()?, body.pipelines.thickness?))
+    timed(&mut ctx, SPAN, |ctx| {
+        let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
+        for (surface, frame, layers, pipeline) in surfaces {
+            if let Some(Some(pipeline)) = pipeline.drawn(surface) {
+                let (surface, target) = ((surface, frame), &layers.thickness);
+                splats.sum(ctx, SPAN, surface, target, *pipeline, &[Class::All]);
+            }
+        }
     });
 }

@@ -64,7 +64,7 @@ impl Emission {
         let owed = self.owed;
         let total = owed + rate * seconds;
         let steady = total as u64;
-        let all = steady + u64::from(emitter.queued);
+        let all = steady + u64::from(emitter.pending_burst);
         for number in all.saturating_sub(u64::from(emitter.capacity))..all {
             // Those of a burst are born where the emitter is now.
             let time = if number < steady {
@@ -141,9 +141,9 @@ impl Nozzle {
         let (side, other) = direction.any_orthonormal_pair();
         Self {
             axes: Mat3::from_cols(side, other, direction),
-            radius: emitter.nozzle,
+            radius: emitter.nozzle_radius,
             // 1 − cos would lose the small angles of jets.
-            opening: 2.0 * (0.5 * emitter.spread).sin().powi(2),
+            opening: 2.0 * (0.5 * emitter.cone_half_angle).sin().powi(2),
             speed: emitter.speed,
             jitter: emitter.jitter,
             seed: emitter.seed,

@@ -3,7 +3,6 @@
 //! [`FluidSystems::Emit`] adds the particles born in a step to the entity's [`FluidParticles`];
 //! [`FluidSystems::Simulate`] moves all particles there.
 
-mod check;
 mod colliders;
 mod contact;
 mod distance;
@@ -16,12 +15,12 @@ use core::f32::consts::PI;
 
 use bevy::prelude::*;
 
-pub use self::{check::EmitterError, colliders::ParticleCollider, particles::EmittedParticles};
+pub use self::{colliders::ParticleCollider, particles::EmittedParticles};
 
 pub(crate) use self::emission::Emission;
 use crate::{
-    range::SettingRange,
     schedule::{FluidSystems, Movers},
+    settings::{Checked, SettingError, SettingRange, Settings, check},
     source::particles::FluidParticles,
 };
 
@@ -33,7 +32,7 @@ use crate::{
 /// there are more than the [`capacity`](Self::capacity).
 ///
 /// The particles are the [`FluidParticles`] on its entity, in the
-/// [world](crate::ParticleSpace::World), the oldest first, with velocities and ids. Other code may
+/// [world](crate::particles::ParticleSpace::World), the oldest first, with velocities and ids. Other code may
 /// move them there; what is beyond the end of the shortest column, ages in [`EmittedParticles`]
 /// included, is dropped.
 ///
@@ -57,7 +56,7 @@ use crate::{
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, EmittedParticles, Emission)]
+#[require(FluidParticles, EmittedParticles, Emission, Checked<Self>)]
 pub struct ParticleEmitter {
     /// Whether new particles are emitted. Default true. Existing particles fly on when it is off.
     pub enabled: bool,
@@ -69,16 +68,16 @@ pub struct ParticleEmitter {
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub speed: f32,
     /// Direction of emission, in the entity's space. Its length does not matter. Default: up, +y.
-    #[reflect(@SettingRange::new(-1.0, 1.0))]
+    #[reflect(@SettingRange::new(-1.0, 1.0).open())]
     pub direction: Vec3,
     /// Half angle of the cone of emission, which is filled evenly. Unit: rad, range 0..=π, default
     /// 0.05. Higher: from a jet to a spray, a half-space (π/2) and all directions (π).
     #[reflect(@SettingRange::new(0.0, PI as f64).unit("rad"))]
-    pub spread: f32,
+    pub cone_half_angle: f32,
     /// Radius of the nozzle, a disc across the direction, in the entity's space. Unit: m, range
     /// 0..=1000, default 0.05. 0: a point.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic())]
-    pub nozzle: f32,
+    pub nozzle_radius: f32,
     /// Random velocity added to each particle, uniform in a ball of this radius. Unit: m/s, range
     /// 0..=1000, default 0.1. Higher: the jet breaks up sooner.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
@@ -88,7 +87,7 @@ pub struct ParticleEmitter {
     #[reflect(@SettingRange::new(1e-6, 1e6).unit("m").logarithmic())]
     pub particle_radius: f32,
     /// Age at which particles vanish. Unit: s, from 0, default 3. Infinite: never.
-    #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().open())]
+    #[reflect(@SettingRange::new(0.0, 1e3).unit("s").logarithmic().valid(0.0, f64::INFINITY))]
     pub lifetime: f32,
     /// Acceleration of the particles, in world space. Unit: m/s², range −1000..=1000 each, default
     /// −9.81 along y.
@@ -108,8 +107,8 @@ pub struct ParticleEmitter {
     pub seed: u64,
     /// Number of particles to emit at once in the next step, which resets it to 0. Default 0. See
     /// [`burst`](Self::burst).
-    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic())]
-    pub queued: u32,
+    #[reflect(@SettingRange::new(0.0, 1e7).unit("particles").logarithmic().open())]
+    pub pending_burst: u32,
 }
 
 /// A box in the space of an emitter's entity.
@@ -117,10 +116,10 @@ pub struct ParticleEmitter {
 #[reflect(Default, Clone, PartialEq)]
 pub struct EmitterBounds {
     /// Its lower corner. Unit: m, default −10 each.
-    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").valid(f64::NEG_INFINITY, f64::INFINITY))]
     pub min: Vec3,
     /// Its upper corner, nowhere below `min`. Unit: m, default 10 each.
-    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").open())]
+    #[reflect(@SettingRange::new(-100.0, 100.0).unit("m").valid(f64::NEG_INFINITY, f64::INFINITY))]
     pub max: Vec3,
 }
 
@@ -147,8 +146,8 @@ impl ParticleEmitter {
         rate: 1000.0,
         speed: 4.0,
         direction: Vec3::Y,
-        spread: 0.05,
-        nozzle: 0.05,
+        cone_half_angle: 0.05,
+        nozzle_radius: 0.05,
         jitter: 0.1,
         particle_radius: 0.02,
         lifetime: 3.0,
@@ -157,7 +156,7 @@ impl ParticleEmitter {
         bounds: None,
         capacity: 100_000,
         seed: 0,
-        queued: 0,
+        pending_burst: 0,
     };
 
     /// A garden hose along the entity's forward direction (−z).
@@ -168,8 +167,8 @@ impl ParticleEmitter {
     pub const SHOWER: Self = Self::shower(2000.0, 0.5);
     /// A fan of fine drops around the entity's forward direction (−z), which the air slows down.
     pub const SPRAY: Self = Self {
-        spread: 0.5,
-        nozzle: 0.01,
+        cone_half_angle: 0.5,
+        nozzle_radius: 0.01,
         particle_radius: 0.008,
         drag: 1.0,
         ..Self::jet(6000.0, 6.0)
@@ -179,8 +178,8 @@ impl ParticleEmitter {
         rate: 2.0,
         speed: 0.0,
         direction: Vec3::NEG_Y,
-        spread: 0.0,
-        nozzle: 0.0,
+        cone_half_angle: 0.0,
+        nozzle_radius: 0.0,
         jitter: 0.0,
         ..Self::DEFAULT
     };
@@ -192,7 +191,7 @@ impl ParticleEmitter {
             rate,
             speed,
             direction: Vec3::NEG_Z,
-            spread: 0.02,
+            cone_half_angle: 0.02,
             jitter: 0.015 * speed,
             ..Self::DEFAULT
         }
@@ -203,21 +202,21 @@ impl ParticleEmitter {
         Self {
             rate,
             speed,
-            spread: 0.15,
-            nozzle: 0.03,
+            cone_half_angle: 0.15,
+            nozzle_radius: 0.03,
             jitter: 0.03 * speed,
             ..Self::DEFAULT
         }
     }
 
-    /// Drops that fall from a disc of radius `nozzle` (m): `rate` drops per second.
-    pub const fn shower(rate: f32, nozzle: f32) -> Self {
+    /// Drops that fall from a disc of `nozzle_radius` (m): `rate` drops per second.
+    pub const fn shower(rate: f32, nozzle_radius: f32) -> Self {
         Self {
             rate,
             speed: 2.0,
             direction: Vec3::NEG_Y,
-            spread: 0.0,
-            nozzle,
+            cone_half_angle: 0.0,
+            nozzle_radius,
             ..Self::DEFAULT
         }
     }
@@ -228,7 +227,7 @@ impl ParticleEmitter {
         Self {
             rate: 0.0,
             speed,
-            spread: PI,
+            cone_half_angle: PI,
             jitter: 0.3 * speed,
             ..Self::DEFAULT
         }
@@ -237,7 +236,7 @@ impl ParticleEmitter {
     /// Emits `count` particles at once in the next step, whether or not the emitter is enabled.
     /// Counts requested before that step add up.
     pub fn burst(&mut self, count: u32) {
-        self.queued = self.queued.saturating_add(count);
+        self.pending_burst = self.pending_burst.saturating_add(count);
     }
 
     /// Starts emission.
@@ -250,14 +249,37 @@ impl ParticleEmitter {
         self.enabled = false;
     }
 
-    /// The clamped settings for a step of `seconds`. If any time passes, the queue is emptied.
-    pub(crate) fn take(emitter: &mut Mut<Self>, seconds: f64) -> Self {
-        let taken = emitter.clamped();
-        if emitter.queued > 0 && seconds > 0.0 {
+    /// The checked settings for a step of `seconds`. If any time passes, the queue is emptied.
+    pub(crate) fn take(emitter: &mut Mut<Self>, checked: &Checked<Self>, seconds: f64) -> Self {
+        let taken = Self {
+            pending_burst: emitter.pending_burst,
+            ..**checked
+        };
+        if emitter.pending_burst > 0 && seconds > 0.0 {
             // No setting has changed.
-            emitter.bypass_change_detection().queued = 0;
+            emitter.bypass_change_detection().pending_burst = 0;
         }
         taken
+    }
+}
+
+impl Settings for ParticleEmitter {
+    fn mend(&mut self) -> Result<(), SettingError> {
+        let mut mended = Ok(());
+        if self.direction.try_normalize().is_none() {
+            let (name, expected) = ("ParticleEmitter::direction", "finite and not zero");
+            mended = Err(SettingError::new(name, self.direction, expected));
+            self.direction = Self::DEFAULT.direction;
+        }
+        // Not for NaN either.
+        let is_box = |bounds: &EmitterBounds| bounds.min.cmple(bounds.max).all();
+        if let Some(EmitterBounds { min, max }) = self.bounds.filter(|it| !is_box(it)) {
+            let (name, value) = ("ParticleEmitter::bounds", format!("from {min} to {max}"));
+            let expected = "a box, with `min` nowhere above `max`";
+            mended = mended.and(Err(SettingError::new(name, value, expected)));
+            self.bounds = None;
+        }
+        mended
     }
 }
 
@@ -276,15 +298,16 @@ pub(crate) fn step(time: &Time) -> f64 {
 }
 
 pub(crate) fn plugin(app: &mut App) {
+    check::<ParticleEmitter>(app);
+    check::<ParticleCollider>(app);
     app.register_type::<ParticleEmitter>()
         .register_type::<ParticleCollider>()
         .register_type::<ExternalMotion>()
+        .add_observer(particles::stop)
         .add_systems(
             PostUpdate,
             (
-                (check::check_emitters, particles::emit)
-                    .chain()
-                    .in_set(FluidSystems::Emit),
+                particles::emit.in_set(FluidSystems::Emit),
                 particles::simulate.in_set(Movers::Emitters),
             ),
         );

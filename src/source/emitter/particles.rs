@@ -8,7 +8,7 @@ use bevy::{
 use rayon::prelude::*;
 
 use super::{
-    EmitterBounds, EmitterError, ExternalMotion, ParticleCollider, ParticleEmitter,
+    EmitterBounds, ExternalMotion, ParticleCollider, ParticleEmitter,
     colliders::{ColliderPath, Colliders},
     emission::{Birth, Emission},
     flight::Forces,
@@ -16,7 +16,7 @@ use super::{
     step,
 };
 use crate::{
-    complaints::Complaints,
+    settings::Checked,
     source::particles::{FluidParticles, ParticleSpace},
 };
 
@@ -35,6 +35,8 @@ const SAME_RADIUS: f32 = 1e-5;
 pub struct EmittedParticles {
     /// Negative at the beginning of a step for particles born within it.
     ages: Vec<f32>,
+    /// Whether the transform has no inverse, so that particles have no place in the entity's space.
+    is_nowhere: bool,
 }
 
 impl EmittedParticles {
@@ -175,12 +177,24 @@ impl Chunk<'_> {
     }
 }
 
+/// An emitter that is inserted again elsewhere has not moved there from here.
+pub(super) fn stop(
+    removed: On<Remove, ParticleEmitter>,
+    mut emitters: Query<(&mut Emission, &mut EmittedParticles)>,
+) {
+    if let Ok((mut emission, mut particles)) = emitters.get_mut(removed.entity) {
+        *emission = default();
+        particles.is_nowhere = false;
+    }
+}
+
 /// Emits particles.
 pub(super) fn emit(
     mut emitters: Query<
         (
             Entity,
             Mut<ParticleEmitter>,
+            &Checked<ParticleEmitter>,
             &mut Emission,
             &mut EmittedParticles,
             &mut FluidParticles,
@@ -191,12 +205,12 @@ pub(super) fn emit(
     time: Res<Time>,
 ) {
     let seconds = step(&time);
-    for (entity, mut emitter, mut emission, mut particles, mut fluid) in &mut emitters {
+    for (entity, mut emitter, checked, mut emission, mut particles, mut fluid) in &mut emitters {
         let Ok(transform) = transforms.compute_global_transform(entity) else {
             continue;
         };
         particles.truncate_to_columns(&mut fluid);
-        let settings = ParticleEmitter::take(&mut emitter, seconds);
+        let settings = ParticleEmitter::take(&mut emitter, checked, seconds);
         emission.emit(&settings, &transform, seconds, |birth: Birth| {
             particles.ages.push(birth.age - seconds as f32);
             fluid.positions.push(birth.position);
@@ -214,29 +228,23 @@ pub(super) fn simulate(
     mut emitters: Query<
         (
             Entity,
-            &ParticleEmitter,
+            &Checked<ParticleEmitter>,
             &mut EmittedParticles,
             &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
-    mut colliders: Query<(Entity, &ParticleCollider, &mut ColliderPath)>,
+    mut colliders: Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
     transforms: TransformHelper,
-    mut gone: RemovedComponents<ParticleEmitter>,
     mut list: Local<Colliders>,
-    mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
     list.gather(&mut colliders, &transforms);
-    for entity in gone.read() {
-        complaints.forget(entity);
-    }
     for (entity, emitter, mut particles, mut fluid) in &mut emitters {
         let Ok(transform) = transforms.compute_global_transform(entity) else {
             continue;
         };
-        let emitter = emitter.clamped();
         let world_from_local = transform.affine();
         let scale = world_from_local.matrix3.determinant().abs().cbrt();
         let radius = emitter.particle_radius * scale;
@@ -246,15 +254,15 @@ pub(super) fn simulate(
             fluid.radius = radius;
         }
         let local_from_world = world_from_local.inverse();
-        let is_sound = local_from_world.is_finite();
-        let checked = is_sound.then_some(()).ok_or(EmitterError::Transform);
-        if let Some(error) = complaints.of(entity, checked) {
-            warn!("emitter {entity}: {error}; its particles vanish");
+        let was_nowhere = particles.is_nowhere;
+        particles.is_nowhere = !local_from_world.is_finite();
+        if particles.is_nowhere && !was_nowhere {
+            warn!("emitter {entity}: its `GlobalTransform` has no inverse; its particles vanish");
         }
         if particles.is_empty() {
             continue;
         }
-        if !is_sound {
+        if particles.is_nowhere {
             particles.truncate(&mut fluid, 0);
             continue;
         }

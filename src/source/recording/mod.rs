@@ -57,13 +57,16 @@ pub use self::{
     frame::{FrameError, ParticleFrame},
     loader::{FluidRecordingLoader, ParticleFrameLoader},
     pattern::FramePattern,
-    player::{Interpolation, PlayerError, RecordingPlayer},
+    player::{Interpolation, RecordingPlayer},
     writer::{RecordingWriter, WrittenFrames},
 };
-use crate::schedule::{self, FluidSystems, Movers};
+use crate::{
+    schedule::{FluidSystems, Movers},
+    settings::check,
+};
 
-/// Plays and writes recordings. [`FluidPlugin`](crate::FluidPlugin) adds it; it also works without
-/// that plugin, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
+/// Plays and writes recordings. Part of [`FluidPlugins`](crate::FluidPlugins); it also works without
+/// the others, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
 /// `Time`.
 ///
 /// Players run in [`FluidSystems::Simulate`]; writers run after it.
@@ -72,7 +75,8 @@ pub struct RecordingPlugin;
 
 impl Plugin for RecordingPlugin {
     fn build(&self, app: &mut App) {
-        schedule::order(app);
+        check::<RecordingPlayer>(app);
+        check::<RecordingWriter>(app);
         app.init_asset::<ParticleFrame>()
             .init_asset::<FluidRecording>()
             .register_asset_reflect::<ParticleFrame>()
@@ -84,9 +88,7 @@ impl Plugin for RecordingPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    (player::check_players, playback::play)
-                        .chain()
-                        .in_set(Movers::Recordings),
+                    playback::play.in_set(Movers::Recordings),
                     writer::record
                         .after(FluidSystems::Simulate)
                         .before(FluidSystems::Shape),

@@ -9,12 +9,13 @@ use super::{
     player::{Interpolation, RecordingPlayer},
     playhead::{Playhead, moved_on},
 };
-use crate::source::particles::FluidParticles;
+use crate::{settings::Checked, source::particles::FluidParticles};
 
 pub(super) fn play(
     mut players: Query<(
         Entity,
         &mut RecordingPlayer,
+        &Checked<RecordingPlayer>,
         &mut LoadedFrames,
         &mut FluidParticles,
     )>,
@@ -22,7 +23,7 @@ pub(super) fn play(
     server: Res<AssetServer>,
     time: Res<Time>,
 ) {
-    for (entity, mut player, mut frames, mut particles) in &mut players {
+    for (entity, mut player, checked, mut frames, mut particles) in &mut players {
         let Some(recording) = recordings.get(&player.recording) else {
             continue;
         };
@@ -32,52 +33,57 @@ pub(super) fn play(
         if frames.playable.is_empty() {
             continue;
         }
-        let now = moved(&player, frames, recording, time.delta_secs_f64());
+        let now = moved(
+            player.time,
+            checked,
+            frames,
+            recording,
+            time.delta_secs_f64(),
+        );
         if player.time != now {
             player.time = now;
         }
-        let rate = player.clamped_rate();
-        let head = Playhead::at(now, recording, &frames.playable, rate >= 0.0, player.repeat);
-        if let Some(moment) = choose(frames, &head, player.interpolation) {
+        let is_forward = checked.rate >= 0.0;
+        let head = Playhead::at(now, recording, &frames.playable, is_forward, checked.repeat);
+        if let Some(moment) = choose(frames, &head, checked.interpolation) {
             show(
                 moment,
                 frames,
                 recording,
-                player.interpolation,
-                rate,
+                checked.interpolation,
+                checked.rate,
                 &mut particles,
             );
         }
-        let radius = frames
-            .shown_radius
-            .or(player.sound_radius())
-            .or(recording.radius);
+        let radius = frames.shown_radius.or(checked.radius).or(recording.radius);
         if let Some(radius) = radius.filter(|&radius| radius != particles.radius)
             && frames.shown.is_some()
         {
             particles.radius = radius;
         }
-        frames.load(&head, recording, &server, player.clamped_cache());
+        frames.load(&head, recording, &server, checked.cache);
     }
 }
 
 /// The player's time now, in range.
 fn moved(
+    time: f64,
     player: &RecordingPlayer,
     frames: &mut LoadedFrames,
     recording: &FluidRecording,
     delta: f64,
 ) -> f64 {
-    let time = player.clamped_time();
-    let is_sought = frames.left_at.is_some_and(|left_at| left_at != player.time);
+    let is_sought = frames.left_at.is_some_and(|left_at| left_at != time);
     frames.is_seeking |= is_sought;
     // The target of a seek is shown before the clock moves on, and so is the start.
     let stands = is_sought || player.paused || frames.shown.is_none();
     let seconds = if stands {
         0.0
     } else {
-        delta * player.clamped_rate()
+        delta * f64::from(player.rate)
     };
+    // It may have been set since it was checked.
+    let time = if time.is_finite() { time } else { player.time };
     let now = moved_on(time, seconds, recording, player.repeat);
     frames.left_at = Some(now);
     now
@@ -144,7 +150,7 @@ fn show(
     frames: &mut LoadedFrames,
     recording: &FluidRecording,
     interpolation: Interpolation,
-    rate: f64,
+    rate: f32,
     particles: &mut Mut<FluidParticles>,
 ) {
     if frames.shown == Some(moment) {
@@ -155,7 +161,6 @@ fn show(
         return;
     };
     let particles = &mut **particles;
-    let rate = rate as f32;
     if moment.before == moment.after {
         particles.positions.clone_from(&before.positions);
         particles.ids.clone_from(&before.ids);

@@ -1,15 +1,13 @@
 //! The component that plays a recording.
 
-use std::mem::{Discriminant, discriminant};
-
-use bevy::{ecs::entity::EntityHashMap, prelude::*};
-use thiserror::Error;
+use bevy::prelude::*;
 
 use super::{asset::FluidRecording, cache::LoadedFrames, frame::is_radius};
-use crate::{range::SettingRange, source::particles::FluidParticles};
-
-const MAX_RATE: f32 = 100.0;
-const CACHES: [usize; 2] = [2, 1024];
+use crate::{
+    settings::{Checked, SettingError, SettingRange, Settings},
+    shape::RADIUS,
+    source::particles::FluidParticles,
+};
 
 /// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity: positions, and velocities
 /// and ids if the files have them. Velocities are those of playback: at half the rate, half as
@@ -30,14 +28,14 @@ const CACHES: [usize; 2] = [2, 1024];
 /// ignored.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, LoadedFrames)]
+#[require(FluidParticles, LoadedFrames, Checked<Self>)]
 pub struct RecordingPlayer {
     /// The recording to play.
     pub recording: Handle<FluidRecording>,
     /// Playback time; set it to seek. Unit: s from the first frame. Finite, default 0.
     /// It is kept between 0 and the recording's [`end`](FluidRecording::end), or, when repeating,
     /// below its [`duration`](FluidRecording::duration).
-    #[reflect(@SettingRange::new(0.0, 600.0).unit("s").open())]
+    #[reflect(@SettingRange::new(0.0, 600.0).unit("s").valid(f64::MIN, f64::MAX))]
     pub time: f64,
     /// Seconds of recorded time per second. Range −100..=100, default 1. Higher: faster; 0:
     /// stopped; negative: backwards.
@@ -54,8 +52,8 @@ pub struct RecordingPlayer {
     /// Higher: smoother with slow files and fast playback.
     #[reflect(@SettingRange::new(2.0, 1024.0).unit("frames").logarithmic())]
     pub cache: usize,
-    /// Radius if the files have none. Unit: m, > 0. Default: none.
-    #[reflect(@SettingRange::new(1e-3, 1.0).unit("m").logarithmic().open().start(0.025))]
+    /// Radius if the files have none. Unit: m, range 1e-9..=1e9, default: none.
+    #[reflect(@RADIUS.initial(0.025))]
     pub radius: Option<f32>,
 }
 
@@ -92,24 +90,6 @@ impl Default for RecordingPlayer {
     }
 }
 
-/// Which setting of a player is out of range.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum PlayerError {
-    /// The rate is out of range.
-    #[error("`RecordingPlayer::rate` is {0}; it must be from -100 to 100")]
-    Rate(f32),
-    /// The time is not finite.
-    #[error("`RecordingPlayer::time` is {0}; it must be finite")]
-    Time(f64),
-    /// The size of the cache is out of range.
-    #[error("`RecordingPlayer::cache` is {0}; it must be from 2 to 1024")]
-    Cache(usize),
-    /// The radius is not a positive number.
-    #[error("`RecordingPlayer::radius` is {0}; it must be a positive number")]
-    Radius(f32),
-}
-
 impl RecordingPlayer {
     /// Plays from the start, once.
     pub fn new(recording: Handle<FluidRecording>) -> Self {
@@ -131,76 +111,15 @@ impl RecordingPlayer {
     pub fn seek(&mut self, time: f64) {
         self.time = time;
     }
-
-    /// Checks every field against its documented range.
-    ///
-    /// # Errors
-    /// The first field that is out of its range, by name and value.
-    pub fn validate(&self) -> Result<(), PlayerError> {
-        // NaN is in no range.
-        if !(-MAX_RATE..=MAX_RATE).contains(&self.rate) {
-            return Err(PlayerError::Rate(self.rate));
-        }
-        if !self.time.is_finite() {
-            return Err(PlayerError::Time(self.time));
-        }
-        if !(CACHES[0]..=CACHES[1]).contains(&self.cache) {
-            return Err(PlayerError::Cache(self.cache));
-        }
-        match self.radius {
-            Some(radius) if !is_radius(radius) => Err(PlayerError::Radius(radius)),
-            _ => Ok(()),
-        }
-    }
-
-    /// The clamped rate; the default for NaN.
-    pub(super) fn clamped_rate(&self) -> f64 {
-        if self.rate.is_nan() {
-            return 1.0;
-        }
-        self.rate.clamp(-MAX_RATE, MAX_RATE).into()
-    }
-
-    /// The time, or the recording's start if it is not finite.
-    pub(super) fn clamped_time(&self) -> f64 {
-        if self.time.is_finite() {
-            self.time
-        } else {
-            0.0
-        }
-    }
-
-    /// The radius, if it is valid.
-    pub(super) fn sound_radius(&self) -> Option<f32> {
-        self.radius.filter(|&radius| is_radius(radius))
-    }
-
-    pub(super) fn clamped_cache(&self) -> usize {
-        self.cache.clamp(CACHES[0], CACHES[1])
-    }
 }
 
-/// Logs invalid settings, once for each field.
-pub(super) fn check_players(
-    changed: Query<(Entity, &RecordingPlayer), Changed<RecordingPlayer>>,
-    mut gone: RemovedComponents<RecordingPlayer>,
-    mut said: Local<EntityHashMap<Discriminant<PlayerError>>>,
-) {
-    for entity in gone.read() {
-        said.remove(&entity);
-    }
-    for (entity, player) in &changed {
-        let Err(error) = player.validate() else {
-            said.remove(&entity);
-            continue;
+impl Settings for RecordingPlayer {
+    fn mend(&mut self) -> Result<(), SettingError> {
+        // What is no length is next to none.
+        let Some(radius) = self.radius.take_if(|radius| !is_radius(*radius)) else {
+            return Ok(());
         };
-        let field = discriminant(&error);
-        if said.insert(entity, field) != Some(field) {
-            let instead = match error {
-                PlayerError::Radius(_) => "without it",
-                _ => "with the nearest value in range",
-            };
-            warn!("fluid {entity}: {error}; it is played {instead}");
-        }
+        let name = "RecordingPlayer::radius";
+        Err(SettingError::new(name, radius, "a positive number"))
     }
 }

@@ -7,17 +7,27 @@ use super::{
     runner::Simulation,
     world::{Command, Limits, Newborn},
 };
-use crate::source::emitter::{Emission, ParticleEmitter, step};
+use crate::{
+    settings::Checked,
+    source::emitter::{Emission, ParticleEmitter, step},
+};
 
 /// Sends new particles to the simulation, and the limits of those that stay.
 pub(crate) fn emit(
     mut simulation: ResMut<Simulation>,
-    settings: Res<SalvaSettings>,
-    mut emitters: Query<(Entity, Mut<ParticleEmitter>, &mut Emission), With<SalvaFluid>>,
+    settings: Single<&Checked<SalvaSettings>>,
+    mut emitters: Query<
+        (
+            Entity,
+            Mut<ParticleEmitter>,
+            &Checked<ParticleEmitter>,
+            &mut Emission,
+        ),
+        With<SalvaFluid>,
+    >,
     transforms: TransformHelper,
     time: Res<Time>,
 ) {
-    let settings = settings.clamped();
     // Where the liquid moves in slow motion, so does what comes out.
     let pace = if settings.paused {
         0.0
@@ -25,11 +35,11 @@ pub(crate) fn emit(
         simulation.pace.rate
     };
     let seconds = step(&time) * pace;
-    for (entity, mut emitter, mut emission) in &mut emitters {
+    for (entity, mut emitter, checked, mut emission) in &mut emitters {
         let Ok(transform) = transforms.compute_global_transform(entity) else {
             continue;
         };
-        let own = ParticleEmitter::take(&mut emitter, seconds);
+        let own = ParticleEmitter::take(&mut emitter, checked, seconds);
         let mut newborn = Newborn::default();
         emission.emit(&own, &transform, seconds, |birth| {
             let fallen = 0.5 * birth.age * settings.gravity;

@@ -3,7 +3,8 @@
 use bevy::prelude::*;
 
 use crate::{
-    range::SettingRange, source::emitter::ExternalMotion, source::particles::FluidParticles,
+    settings::{Checked, SettingRange, Settings},
+    source::{emitter::ExternalMotion, particles::FluidParticles},
 };
 
 /// A fluid simulated by salva.
@@ -18,9 +19,9 @@ use crate::{
 /// logged once and not simulated. Fluids of different [`density`](Self::density) press on each
 /// other and separate.
 ///
-/// A [`ParticleEmitter`](crate::ParticleEmitter) on its entity emits particles into the simulation,
+/// A [`ParticleEmitter`](crate::emitter::ParticleEmitter) on its entity emits particles into the simulation,
 /// no more than fit beside each other; its lifetime, capacity and bounds apply, its gravity and
-/// drag do not.
+/// drag do not. Values out of range are logged once and clamped.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -39,7 +40,7 @@ use crate::{
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, ExternalMotion)]
+#[require(FluidParticles, ExternalMotion, Checked<Self>)]
 pub struct SalvaFluid {
     /// Density at rest. Unit: kg/m³, range 1..=100000, default 1000. Lighter bodies float, heavier
     /// ones sink.
@@ -91,6 +92,8 @@ impl SalvaFluid {
         ..Self::WATER
     };
 }
+
+impl Settings for SalvaFluid {}
 
 impl Default for SalvaFluid {
     fn default() -> Self {

@@ -36,8 +36,9 @@
 //! # What happens in a frame
 //!
 //! In [`FluidSystems::Simulate`](crate::FluidSystems::Simulate), finished steps are collected,
-//! changes are gathered, the next steps begin on other threads, and positions interpolated between the last two
-//! finished states are written to [`FluidParticles`](crate::FluidParticles) and to the bodies'
+//! changes are gathered, the next steps begin on other threads, and positions interpolated between
+//! the last two finished states are written to
+//! [`FluidParticles`](crate::particles::FluidParticles) and to the bodies'
 //! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
 //! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
 //! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] limits how much of a
@@ -69,8 +70,8 @@
 //!   body of particles of 5 cm); at 20 m/s it does not.
 //! - Threads: it does not run on the web.
 
-mod check;
 mod emit;
+mod error;
 mod fluid;
 mod gather;
 mod pace;
@@ -88,16 +89,17 @@ use bevy::{
 };
 
 pub use self::{
-    check::SalvaError,
+    error::SalvaError,
     fluid::SalvaFluid,
     settings::{SalvaMode, SalvaSettings, SalvaStatus},
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::schedule::{self, Movers};
+use crate::{schedule::Movers, settings::check, source::emitter::ParticleEmitter};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
-/// [`FluidPlugin`](crate::FluidPlugin) draws the fluids; the simulation also runs without it.
+/// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
+/// fluids; the simulation also runs without it.
 ///
 /// It runs in [`FluidSystems::Simulate`](crate::FluidSystems::Simulate): anything moved or spawned
 /// before that takes part in the steps that begin there.
@@ -106,7 +108,11 @@ pub struct SalvaPlugin;
 
 impl Plugin for SalvaPlugin {
     fn build(&self, app: &mut App) {
-        schedule::order(app);
+        check::<SalvaFluid>(app);
+        check::<SalvaBoundary>(app);
+        check::<SalvaBody>(app);
+        check::<SalvaSettings>(app);
+        check::<ParticleEmitter>(app);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()

@@ -20,7 +20,7 @@ use super::{
     pace::Pace,
     world::{Command, Frame, Job, Report, World},
 };
-use crate::complaints::Complaints;
+use crate::settings::Checked;
 
 /// A world that comes back from a job, unless it panicked.
 type Finished = Option<(Box<World>, Frame, Report)>;
@@ -190,17 +190,10 @@ pub(crate) fn collect(
 /// Begins a job if one is due, and advances the time shown.
 pub(crate) fn advance(
     mut simulation: ResMut<Simulation>,
-    settings: Res<SalvaSettings>,
+    settings: Single<&Checked<SalvaSettings>>,
     mut status: ResMut<SalvaStatus>,
-    mut complaints: Local<Complaints>,
     time: Res<Time>,
 ) {
-    if settings.is_changed()
-        && let Some(error) = complaints.of(Entity::PLACEHOLDER, settings.validate())
-    {
-        warn!("{error}; it is clamped");
-    }
-    let settings = settings.clamped();
     let delta = if settings.paused {
         0.0
     } else {
@@ -237,7 +230,7 @@ impl Simulation {
     }
 
     fn background(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
-        let budget = settings.budget.as_secs_f64().max(1e-4);
+        let budget = settings.budget.as_secs_f64();
         self.pace.tick(delta, budget, self.task.is_some());
         if self.task.is_none() && delta > 0.0 {
             let steps = self.pace.due(f64::from(settings.step), settings.max_steps);

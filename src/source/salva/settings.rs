@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 
-use crate::range::SettingRange;
+use crate::settings::{Checked, SettingRange, Settings};
 
 /// Settings of [`SalvaPlugin`](super::SalvaPlugin), which may be changed at any time.
 ///
 /// Values out of range are logged once and clamped.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Clone, PartialEq)]
+#[require(Checked<Self>)]
 pub struct SalvaSettings {
     /// Whether the simulation runs in the background or in lockstep. Default:
     /// [`SalvaMode::Background`].
@@ -50,6 +51,8 @@ pub struct SalvaSettings {
     #[reflect(@SettingRange::new(-1e3, 1e3).unit("m").open())]
     pub high: Vec3,
 }
+
+impl Settings for SalvaSettings {}
 
 impl Default for SalvaSettings {
     fn default() -> Self {

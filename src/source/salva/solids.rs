@@ -2,7 +2,10 @@
 
 use bevy::prelude::*;
 
-use crate::{range::SettingRange, source::solid::SolidShape};
+use crate::{
+    settings::{Checked, SettingRange, Settings},
+    source::solid::SolidShape,
+};
 
 /// The shape of a simulated solid in the space of its entity, scaled by the entity's transform.
 /// Bevy's primitives convert into it.
@@ -20,8 +23,8 @@ pub enum SalvaShape {
     Solid(SolidShape),
     /// A box around the origin with liquid inside, open at the top. Only for boundaries.
     Tank {
-        /// Half of the side lengths of the inside. Unit: m, > 0.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic())]
+        /// Half of the side lengths of the inside. Unit: m, range 1e-6..=1e6.
+        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6))]
         half_size: Vec3,
     },
 }
@@ -42,9 +45,11 @@ impl<T: Into<SolidShape>> From<T> for SalvaShape {
 /// It always follows its transform, even while the liquid moves in slow motion: at a fifth of the
 /// speed, a plunger of 1 m/s hits the liquid at 5 m/s. Where that matters, move it in the liquid's
 /// time: by `time.delta_secs() * status.speed` of [`SalvaStatus`](super::SalvaStatus).
+///
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform)]
+#[require(Transform, Checked<Self>)]
 pub struct SalvaBoundary {
     /// Its shape. Default: the entity's mesh.
     pub shape: SalvaShape,
@@ -83,6 +88,8 @@ impl SalvaBoundary {
     }
 }
 
+impl Settings for SalvaBoundary {}
+
 impl Default for SalvaBoundary {
     fn default() -> Self {
         Self::MESH
@@ -96,10 +103,11 @@ impl Default for SalvaBoundary {
 /// written by other code teleports it, at rest. It should be several particles across.
 ///
 /// Other changes leave its motion unchanged; inserting it again restarts it. On an entity that also
-/// has a [`SalvaBoundary`], the body takes precedence.
+/// has a [`SalvaBoundary`], the body takes precedence. Values out of range are logged once and
+/// clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform)]
+#[require(Transform, Checked<Self>)]
 pub struct SalvaBody {
     /// Its shape. Default: the convex hull of the entity's mesh.
     pub shape: SalvaShape,
@@ -135,6 +143,8 @@ impl SalvaBody {
         }
     }
 }
+
+impl Settings for SalvaBody {}
 
 impl Default for SalvaBody {
     fn default() -> Self {

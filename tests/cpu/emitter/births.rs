@@ -120,7 +120,7 @@ fn what_is_out_stays_in_the_world() {
     let (mut app, entity) = emitting(ParticleEmitter {
         speed: 0.0,
         gravity: Vec3::ZERO,
-        nozzle: 0.5,
+        nozzle_radius: 0.5,
         ..EXACT
     });
     let parent = app.world_mut().spawn(Transform::default()).id();
@@ -146,11 +146,11 @@ fn what_is_out_stays_in_the_world() {
 fn the_cone_is_filled_evenly() {
     for (spread, scale) in [(0.3, 1.0), (FRAC_PI_2, 2.5), (PI, 1.0)] {
         let (mut app, entity) = emitting(ParticleEmitter {
-            spread,
+            cone_half_angle: spread,
             speed: 3.0,
             direction: vec3(0.0, 0.0, 2.0),
             gravity: Vec3::ZERO,
-            queued: 40_000,
+            pending_burst: 40_000,
             rate: 0.0,
             ..EXACT
         });
@@ -179,12 +179,12 @@ fn the_cone_is_filled_evenly() {
 #[test]
 fn the_nozzle_is_an_even_disc_and_jitter_an_even_ball() {
     let (mut app, entity) = emitting(ParticleEmitter {
-        nozzle: 0.4,
+        nozzle_radius: 0.4,
         speed: 0.0,
         jitter: 2.0,
         direction: Vec3::X,
         gravity: Vec3::ZERO,
-        queued: 40_000,
+        pending_burst: 40_000,
         rate: 0.0,
         ..EXACT
     });
@@ -237,7 +237,7 @@ fn a_burst_comes_out_at_once_where_the_emitter_is() {
     step(&mut app, 0.0);
     assert!(particles(&app, entity).is_empty(), "no time has passed");
     step(&mut app, 0.02);
-    assert_eq!(emitter(&mut app, entity).queued, 0);
+    assert_eq!(emitter(&mut app, entity).pending_burst, 0);
     let places = particles(&app, entity).positions();
     assert_eq!(places.len(), 100);
     assert!(places.iter().all(|p| p.distance(Vec3::Y * 5.0) < 0.051));

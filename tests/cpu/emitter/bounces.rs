@@ -157,10 +157,10 @@ fn a_collider_that_moves_takes_particles_along() {
 #[test]
 fn thousands_at_rest_stay_at_rest() {
     let (mut app, entity) = emitting(ParticleEmitter {
-        nozzle: 1.0,
+        nozzle_radius: 1.0,
         speed: 0.0,
         rate: 0.0,
-        queued: 3000,
+        pending_burst: 3000,
         ..EXACT
     });
     place(&mut app, entity).translation.y = 0.3;

@@ -1,6 +1,6 @@
 //! How particles vanish, and what a still emitter costs.
 
-use bevy_fluid::{EmitterBounds, ShapedFluid};
+use bevy_fluid::{emitter::EmitterBounds, particles::ShapedFluid};
 
 use super::*;
 
@@ -156,7 +156,7 @@ fn others_may_move_what_is_emitted() {
     let own = FluidParticles::new(vec![Vec3::X], 0.1);
     app.world_mut()
         .entity_mut(entity)
-        .insert((bevy_fluid::ExternalMotion, own));
+        .insert((bevy_fluid::emitter::ExternalMotion, own));
     run(&mut app, 0.5, 50.0);
     assert!(particles(&app, entity).is_empty());
     assert_eq!(drawn(&app, entity), [Vec3::X]);

@@ -12,7 +12,7 @@ mod solids;
 use std::time::Duration;
 
 use bevy::{prelude::*, shader::Shader, time::TimeUpdateStrategy};
-use bevy_fluid::{EmittedParticles, prelude::*};
+use bevy_fluid::{emitter::EmittedParticles, prelude::*};
 
 use fluid_stage::log;
 
@@ -20,8 +20,8 @@ const G: f32 = 9.81;
 
 /// One particle at a time and in a place, along a line: what closed forms are about.
 const EXACT: ParticleEmitter = ParticleEmitter {
-    spread: 0.0,
-    nozzle: 0.0,
+    cone_half_angle: 0.0,
+    nozzle_radius: 0.0,
     jitter: 0.0,
     lifetime: f32::INFINITY,
     ..ParticleEmitter::DEFAULT
@@ -33,7 +33,7 @@ fn one(speed: f32, direction: Vec3) -> ParticleEmitter {
         rate: 0.0,
         speed,
         direction,
-        queued: 1,
+        pending_burst: 1,
         ..EXACT
     }
 }

@@ -1,6 +1,6 @@
 //! Values that are invalid.
 
-use bevy_fluid::{EmitterBounds, EmitterError, SolidShape};
+use bevy_fluid::{emitter::EmitterBounds, solid::SolidShape};
 
 use super::*;
 
@@ -9,8 +9,8 @@ type Emitter = ParticleEmitter;
 const EMITTER_FIELDS: [(&str, fn(&mut Emitter, f32)); 11] = [
     ("rate", |e, v| e.rate = v),
     ("speed", |e, v| e.speed = v),
-    ("spread", |e, v| e.spread = v),
-    ("nozzle", |e, v| e.nozzle = v),
+    ("cone_half_angle", |e, v| e.cone_half_angle = v),
+    ("nozzle_radius", |e, v| e.nozzle_radius = v),
     ("jitter", |e, v| e.jitter = v),
     ("particle_radius", |e, v| e.particle_radius = v),
     ("lifetime", |e, v| e.lifetime = v),
@@ -95,7 +95,9 @@ fn bad_fields_are_named_and_clamped() {
         capacity: u32::MAX,
         ..default()
     };
-    assert_eq!(bad.validate(), Err(EmitterError::Capacity(u32::MAX)));
+    let error = bad.validate().unwrap_err();
+    assert_eq!(error.name, "ParticleEmitter::capacity");
+    assert_eq!(error.value, u32::MAX.to_string());
     assert_eq!(bad.clamped().capacity, 10_000_000);
     let upside_down = EmitterBounds {
         min: Vec3::ONE,
@@ -105,14 +107,16 @@ fn bad_fields_are_named_and_clamped() {
         bounds: Some(upside_down),
         ..default()
     };
-    assert_eq!(bad.validate(), Err(EmitterError::Bounds(upside_down)));
+    let error = bad.validate().unwrap_err();
+    assert_eq!(error.name, "ParticleEmitter::bounds");
     assert_eq!(bad.clamped(), Emitter::DEFAULT);
     for direction in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
         let bad = Emitter {
             direction,
             ..default()
         };
-        assert!(matches!(bad.validate(), Err(EmitterError::Direction(_))));
+        let error = bad.validate().unwrap_err();
+        assert_eq!(error.name, "ParticleEmitter::direction");
         assert_eq!(bad.clamped(), Emitter::DEFAULT);
     }
 }
@@ -122,7 +126,7 @@ fn bad_values_are_said_once_and_all_goes_on() {
     let (mut app, entity) = emitting(EXACT);
     let ground = app.world_mut().spawn(ParticleCollider::ground()).id();
     let fields =
-        EMITTER_FIELDS.map(|(field, _)| format!("emitter {entity}: `ParticleEmitter::{field}`"));
+        EMITTER_FIELDS.map(|(field, _)| format!("entity {entity}: `ParticleEmitter::{field}`"));
     for (named, (_, set)) in fields.iter().zip(EMITTER_FIELDS) {
         for value in [f32::NAN, -1e9, f32::NEG_INFINITY] {
             set(&mut emitter(&mut app, entity), value);
@@ -135,7 +139,7 @@ fn bad_values_are_said_once_and_all_goes_on() {
     let mut collider = app.world_mut().get_mut::<ParticleCollider>(ground).unwrap();
     collider.restitution = 7.5;
     run(&mut app, 0.5, 30.0);
-    let named = format!("collider {ground}: `ParticleCollider::restitution` is 7.5");
+    let named = format!("entity {ground}: `ParticleCollider::restitution` is 7.5");
     assert_eq!(log::count(&named), 1);
     assert!(!particles(&app, entity).is_empty());
     for (place, velocity) in drawn(&app, entity)

@@ -9,7 +9,7 @@ const RADIUS: f32 = 0.05;
 
 /// The distance of a point from a collider's surface, in f64, by formulas of its own.
 fn distance(collider: &ParticleCollider, transform: &Transform, point: Vec3) -> f64 {
-    use bevy_fluid::SolidShape::*;
+    use bevy_fluid::solid::SolidShape::*;
     let turn = DQuat::from_array(transform.rotation.to_array().map(f64::from)).normalize();
     let local = turn.inverse() * (point - transform.translation).as_dvec3();
     let scale = transform.scale.as_dvec3().abs();
@@ -128,7 +128,7 @@ fn cases() -> impl Strategy<Value = Case> {
                 direction: translation - place + towards,
                 rate: 300.0,
                 speed,
-                spread: 0.2,
+                cone_half_angle: 0.2,
                 gravity,
                 drag,
                 seed,
@@ -176,7 +176,7 @@ fn shoot(colliders: &[(ParticleCollider, Transform)], seconds: f32) -> (App, Ent
     let (mut app, entity) = emitting(ParticleEmitter {
         rate: 2000.0,
         speed: 300.0,
-        spread: 0.05,
+        cone_half_angle: 0.05,
         direction: Vec3::X,
         particle_radius: 0.005,
         ..EXACT
@@ -209,11 +209,11 @@ fn nothing_tunnels_through_a_thin_wall() {
 #[test]
 fn what_is_put_over_particles_pushes_them_out() {
     let (mut app, entity) = emitting(ParticleEmitter {
-        nozzle: 1.0,
+        nozzle_radius: 1.0,
         speed: 0.0,
         rate: 0.0,
         gravity: Vec3::ZERO,
-        queued: 1000,
+        pending_burst: 1000,
         particle_radius: RADIUS,
         ..EXACT
     });

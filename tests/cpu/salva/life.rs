@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use bevy::prelude::*;
-use bevy_fluid::{ExternalMotion, ParticleEmitter, prelude::*};
+use bevy_fluid::{emitter::ExternalMotion, prelude::*};
 
 use super::pool::{RADIUS, app, block, particles, pool, run, spawn_water, status};
 
@@ -87,7 +87,7 @@ fn an_emitter_feeds_the_liquid() {
     let emitter = ParticleEmitter {
         rate: 200.0,
         speed: 2.0,
-        nozzle: 0.15,
+        nozzle_radius: 0.15,
         direction: Vec3::NEG_Y,
         particle_radius: RADIUS,
         lifetime: 0.5,

@@ -1,7 +1,7 @@
 //! What an emitter's fluid keeps, whatever else is done to it.
 
 use bevy::prelude::*;
-use bevy_fluid::{EmitterBounds, ParticleEmitter, prelude::*};
+use bevy_fluid::{emitter::EmitterBounds, prelude::*};
 
 use super::pool::{RADIUS, app, bare_app, block, particles, run, status};
 
@@ -12,7 +12,7 @@ fn emitter() -> ParticleEmitter {
     ParticleEmitter {
         rate: 60.0,
         speed: 3.0,
-        nozzle: 0.3,
+        nozzle_radius: 0.3,
         direction: Vec3::NEG_Y,
         particle_radius: RADIUS,
         lifetime: LIFETIME,

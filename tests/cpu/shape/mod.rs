@@ -1,7 +1,10 @@
 //! Particles → splats: what the shape stage promises, through its public interface.
 
 use bevy::math::{EulerRot, Mat3, Quat, Vec3};
-use bevy_fluid::shape::{FluidSplats, ShapeError, ShapeWorkspace, Splat, SurfaceKernel};
+use bevy_fluid::{
+    prelude::Settings,
+    shape::{FluidSplats, ShapeError, ShapeWorkspace, Splat, SurfaceKernel},
+};
 use proptest::prelude::*;
 
 use crate::oracle::{self, Random, lattice};

@@ -10,7 +10,8 @@ use bevy::{
     shader::Shader,
 };
 use bevy_fluid::{
-    FluidParticles, FluidPlugin, ShapedFluid,
+    particles::ShapedFluid,
+    prelude::{FluidParticles, FluidPlugin},
     recording::{
         FluidRecording, Interpolation, RecordingPlayer, RecordingPlugin, RecordingSettings,
     },
@@ -284,7 +285,7 @@ fn a_player_without_a_frame_yet_is_no_cause_for_complaint() {
     let (mut app, gates) = gated_with(1, |app| {
         app.add_plugins(TransformPlugin)
             .init_asset::<Shader>()
-            .add_plugins(FluidPlugin::default());
+            .add_plugins((FluidPlugin::default(), RecordingPlugin));
     });
     let recording = open(&app, slowly("gated://dot_#.xyz"));
     let player = RecordingPlayer {

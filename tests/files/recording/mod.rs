@@ -17,7 +17,7 @@ use std::{
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_fluid::{
-    FluidParticles,
+    prelude::FluidParticles,
     recording::{
         FluidRecording, LoadedFrames, ParticleFrame, RecordingPlayer, RecordingPlugin,
         RecordingSettings,

@@ -159,7 +159,7 @@ fn a_moving_emitter_is_played_on_lines() {
     let fluid = FluidParticles {
         velocities: vec![Vec3::X],
         ids: vec![7],
-        space: bevy_fluid::ParticleSpace::World,
+        space: ParticleSpace::World,
         ..FluidParticles::new(positions, 0.1)
     };
     let writer = RecordingWriter {

@@ -4,7 +4,7 @@ use std::fs;
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    FluidParticles,
+    prelude::FluidParticles,
     recording::{Interpolation, RecordingPlayer},
 };
 
@@ -106,7 +106,7 @@ fn it_starts_over_both_ways() {
 #[test]
 fn what_makes_no_sense_is_said_once_and_played_in_range() {
     let (mut app, entity) = all_loaded("senseless", &[0, 1, 2], |player| player.repeat = true);
-    let fluid = format!("fluid {entity}");
+    let fluid = format!("entity {entity}");
     for (field, change) in [
         (
             "RecordingPlayer::rate",

@@ -4,7 +4,7 @@ use std::{fs, iter, path::Path, sync::mpsc};
 
 use bevy::{prelude::*, tasks::IoTaskPool};
 use bevy_fluid::{
-    FluidParticles, FluidSystems,
+    prelude::{FluidParticles, FluidSystems},
     recording::{FluidRecording, ParticleFrame, RecordingPlayer, RecordingWriter, WrittenFrames},
 };
 
@@ -199,21 +199,29 @@ fn what_cannot_be_written_is_said_once() {
         written(&mut app, entity).finish();
         assert_eq!(written(&mut app, entity).written(), 1);
     }
-    for rate in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+    assert_eq!(names(&folder), ["file", "mended"]);
+}
+
+#[test]
+fn rates_out_of_range_are_said_once_and_clamped() {
+    let folder = folder("rates");
+    // Frames in two seconds at the nearest valid rate, for updates of 0.1 s.
+    for (rate, frames) in [(0.0, 1), (-1.0, 1), (f32::NAN, 21), (f32::INFINITY, 21)] {
         let writer = RecordingWriter {
             rate,
-            ..writer(&folder, "rate_#.xyz")
+            queue: 1000,
+            ..writer(&folder, &format!("rate_{rate}_#.xyz"))
         };
         let (mut app, entity) = recorded(&folder, writer, 0.1);
-        app.update();
-        app.update();
-        let error = written(&mut app, entity).error().map(str::to_owned);
-        assert!(
-            error.is_some_and(|error| error.contains(&rate.to_string())),
-            "{rate}"
-        );
+        for _ in 0..21 {
+            app.update();
+        }
+        written(&mut app, entity).finish();
+        let written = written(&mut app, entity);
+        assert_eq!((written.written(), written.error()), (frames, None));
+        let line = format!("entity {entity}: `RecordingWriter::rate` is {rate};");
+        assert_eq!(log::count(&line), 1, "{line}");
     }
-    assert_eq!(names(&folder), ["file", "mended"]);
 }
 
 #[test]

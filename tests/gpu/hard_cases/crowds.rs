@@ -6,7 +6,7 @@ use bevy::{
     prelude::*,
     render::settings::{WgpuLimits, WgpuSettings},
 };
-use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers};
 use fluid_stage::{headless_app_with, step};
 
 use super::*;

@@ -1,7 +1,11 @@
 //! h19 to h26: what smoothing must leave alone.
 
 use bevy::prelude::*;
-use bevy_fluid::{Bilateral, PlaneFit, PlaneFitForm, ScreenSpaceFluid, Smoothing, render::Layers};
+use bevy_fluid::{
+    prelude::ScreenSpaceFluid,
+    render::Layers,
+    settings::{Bilateral, PlaneFit, PlaneFitForm, Smoothing},
+};
 use fluid_stage::TextureData;
 
 use super::*;

@@ -2,9 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    Refractions, ScreenSpaceFluid,
     prelude::*,
     render::{Layers, SearchStatus},
+    settings::Refractions,
 };
 
 use super::*;
@@ -114,7 +114,7 @@ fn h17_the_near_plane_cuts_ellipsoids_without_hole_or_flash() {
             };
             pour(&mut app, (fluid(&[Vec3::ZERO], 1.0, SPRAY), place));
             assert_sound(&app);
-            if view_bodies(&app).is_none() {
+            if view_surfaces(&app).is_none() {
                 assert!(center.z > -0.5, "{center} is in view");
                 continue;
             }
@@ -142,7 +142,7 @@ fn h18_everything_behind_the_camera_is_culled() {
             &mut app,
             fluid(&positions, radius, SurfaceKernel::default()),
         );
-        assert!(view_bodies(&app).is_none(), "at {center}");
+        assert!(view_surfaces(&app).is_none(), "at {center}");
         assert!(picture(&mut app) == empty, "at {center}");
     }
     // Some behind, one ahead: only that is drawn.

@@ -1,7 +1,7 @@
 //! h44 and h47: transforms of cameras, lights and fluids that are more than a place.
 
 use bevy::prelude::*;
-use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers};
 
 use super::*;
 

@@ -2,7 +2,7 @@
 //! the same f64 in `render::shader_tests`.
 
 use bevy::prelude::*;
-use bevy_fluid::{Medium, Refractions, ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers, settings::Refractions};
 
 use super::*;
 

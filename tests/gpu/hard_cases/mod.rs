@@ -43,7 +43,7 @@ const STRETCHED: SurfaceKernel = SurfaceKernel {
 };
 
 /// One of a body's textures.
-type LayerOf = fn(&Layers) -> &Texture;
+type LayerOf = fn(&Layers) -> Option<&Texture>;
 
 #[track_caller]
 fn picture(app: &mut App) -> RgbaImage {
@@ -111,7 +111,7 @@ fn assert_drawn(
 }
 
 /// What the shape stage says of the only fluid.
-fn report(app: &mut App) -> &bevy_fluid::ShapedFluid {
+fn report(app: &mut App) -> &bevy_fluid::particles::ShapedFluid {
     let fluid = only::<FluidParticles>(app);
     app.world().get(fluid).unwrap()
 }

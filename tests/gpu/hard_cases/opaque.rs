@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    Refractions, ScreenSpaceFluid,
+    prelude::ScreenSpaceFluid,
     render::{Layers, SearchStatus},
+    settings::Refractions,
 };
 
 use super::*;

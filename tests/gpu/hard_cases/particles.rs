@@ -2,7 +2,7 @@
 //! in `tests/cpu/shape`, under the same numbers; here it is what becomes of them on screen.
 
 use bevy::prelude::*;
-use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers};
 
 use super::*;
 
@@ -31,7 +31,7 @@ fn assert_dropped(others: &[Vec3], count: u32) {
     assert_eq!(report(&mut app).dropped(), count);
     assert!(picture(&mut app) == clean);
     pour(&mut app, fluid(others, RADIUS, kernel));
-    assert!(view_bodies(&app).is_none(), "nothing else is drawn");
+    assert!(view_surfaces(&app).is_none(), "nothing else is drawn");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn h04_without_particles_the_picture_is_that_without_the_plugin() {
     assert!(picture(&mut app) == plain, "no fluid");
     pour(&mut app, fluid(&[], RADIUS, SurfaceKernel::default()));
     assert!(picture(&mut app) == plain, "a fluid of no particles");
-    assert!(view_bodies(&app).is_none());
+    assert!(view_surfaces(&app).is_none());
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn h07_four_coplanar_particles_do_not_pop() {
 }
 
 fn read_both(app: &App) -> Vec<fluid_stage::TextureData> {
-    let plan = body(app).plan;
+    let plan = *surface(app).0.plan().unwrap();
     let bulk = plan.bulk.then(|| read(app, Layers::bulk));
     let spray = plan.spray.then(|| read(app, Layers::spray));
     bulk.into_iter().chain(spray).collect()

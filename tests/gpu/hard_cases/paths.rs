@@ -2,9 +2,9 @@
 
 use bevy::{math::DVec3, prelude::*};
 use bevy_fluid::{
-    LayerBlending, Medium, Refractions, ScreenSpaceFluid,
     prelude::*,
-    render::{Layers, SearchStatus},
+    render::{LayerBlending, Layers, SearchStatus},
+    settings::Refractions,
 };
 use fluid_stage::TextureData;
 

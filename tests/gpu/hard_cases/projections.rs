@@ -2,7 +2,9 @@
 
 use bevy::{camera::CameraProjection, math::DVec3, prelude::*};
 use bevy_fluid::{
-    PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid, Smoothing, prelude::*, render::Layers,
+    prelude::*,
+    render::Layers,
+    settings::{PlaneFit, PlaneFitForm, Refractions, Smoothing},
 };
 
 use super::*;

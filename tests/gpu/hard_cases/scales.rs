@@ -1,7 +1,7 @@
 //! h12 to h14, h36: far from the origin, very small, very large, very far apart.
 
 use bevy::prelude::*;
-use bevy_fluid::{ParticleSpace, ScreenSpaceFluid, prelude::*};
+use bevy_fluid::prelude::*;
 
 use super::*;
 

@@ -7,7 +7,7 @@ use bevy::{
         renderer::{RenderAdapter, RenderDevice},
     },
 };
-use bevy_fluid::{ScreenSpaceFluid, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers};
 use fluid_stage::{resize, step};
 
 use super::*;

@@ -2,7 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_fluid::{
-    FluidPlugin, LayerBlending, ShapedFluid, SurfaceKernel, prelude::*, render::Layers,
+    particles::ShapedFluid,
+    prelude::*,
+    render::{LayerBlending, Layers},
 };
 
 use crate::common::*;

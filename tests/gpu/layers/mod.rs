@@ -4,7 +4,7 @@ mod equal;
 
 use crate::common::*;
 use bevy::{prelude::*, render::render_resource::Texture};
-use bevy_fluid::{SurfaceKernel, render::Layers};
+use bevy_fluid::{prelude::SurfaceKernel, render::Layers};
 
 const PERSPECTIVE: Lens = Lens::Perspective {
     fov: 0.7,
@@ -17,7 +17,7 @@ const PARALLEL: Lens = Lens::Orthographic {
 };
 const LENSES: [Lens; 2] = [PERSPECTIVE, PARALLEL];
 
-fn bulk_and_spray() -> [(SurfaceKernel, fn(&Layers) -> &Texture); 2] {
+fn bulk_and_spray() -> [(SurfaceKernel, fn(&Layers) -> Option<&Texture>); 2] {
     [(BULK, Layers::bulk), (SPRAY, Layers::spray)]
 }
 
@@ -183,7 +183,7 @@ fn nothing_behind_the_camera_is_drawn() {
     let app = show(&view, RAW, |world| {
         world.spawn(fluid(&[behind], 0.5, SPRAY));
     });
-    assert!(view_bodies(&app).is_none());
+    assert!(view_surfaces(&app).is_none());
 }
 
 #[test]

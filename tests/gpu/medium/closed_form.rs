@@ -1,7 +1,7 @@
 //! The WGSL form against the Rust form and f64.
 
 use bevy::prelude::*;
-use bevy_fluid::Medium;
+use bevy_fluid::prelude::Medium;
 
 use super::gpu::measure;
 

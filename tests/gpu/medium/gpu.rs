@@ -13,7 +13,7 @@ use bevy::{
         renderer::{RenderDevice, RenderQueue},
     },
 };
-use bevy_fluid::FluidPlugin;
+use bevy_fluid::prelude::FluidPlugin;
 use fluid_stage::{headless_app, read_buffer, settle};
 
 const SHADER: &str = "

@@ -9,7 +9,7 @@ mod two;
 
 use crate::common::*;
 use bevy::{camera::Exposure, math::DVec3, prelude::*};
-use bevy_fluid::{Medium, Refractions, ScreenSpaceFluid, Thickness, prelude::*, render::Layers};
+use bevy_fluid::{prelude::*, render::Layers, settings::Refractions};
 use fluid_stage::{TextureData, capture};
 
 /// Two metres square; depth 10 m.

@@ -1,6 +1,9 @@
 //! What is left out is not missed: pictures with and without.
 
-use bevy_fluid::{FluidPlugin, SurfaceKernel, render::Plan};
+use bevy_fluid::{
+    prelude::{FluidPlugin, SurfaceKernel},
+    render::Plan,
+};
 use image::RgbaImage;
 
 use super::*;
@@ -42,7 +45,7 @@ fn both(material: FluidMaterial) -> [(RgbaImage, Plan); 2] {
             scene(world, material);
         });
         furnace(&mut app, 0.4 * white());
-        (capture(&mut app).unwrap(), body(&app).plan)
+        (capture(&mut app).unwrap(), *surface(&app).0.plan().unwrap())
     })
 }
 

@@ -1,8 +1,12 @@
 //! The length of the way through a body: from its layers, summed up over particles, and exact.
 
-use bevy_fluid::{FluidPlugin, LayerBlending, SurfaceKernel};
+use bevy_fluid::{
+    prelude::{FluidPlugin, SurfaceKernel},
+    render::LayerBlending,
+};
 
 use super::*;
+use bevy_fluid::render::Layers;
 
 fn smoke(softness: f32) -> FluidMaterial {
     FluidMaterial {
@@ -11,10 +15,9 @@ fn smoke(softness: f32) -> FluidMaterial {
     }
 }
 
-/// The only body's thickness, in m.
+/// The only surface's thickness, in m.
 fn thickness(app: &App) -> impl Fn(UVec2) -> f64 + use<> {
-    let texture = body(app).layers.thickness().expect("it is summed up");
-    let data = fluid_stage::read_texture(app, texture).unwrap();
+    let data = read(app, Layers::thickness);
     move |pixel| {
         let i = (pixel.y * data.size.x + pixel.x) as usize;
         f64::from(match data.format {

@@ -1,7 +1,5 @@
 //! Two materials in view at once, in both orders of depth.
 
-use bevy_fluid::render::ViewBodies;
-
 use super::*;
 
 const LIGHT: f32 = 0.5;
@@ -28,10 +26,6 @@ fn on_axis(app: &mut App) -> Vec3 {
     Color::srgb_u8(r, g, b).to_linear().to_vec3()
 }
 
-fn bodies(app: &App) -> &ViewBodies {
-    view_bodies(app).expect("fluids are in view")
-}
-
 #[test]
 fn fogs_compose_in_the_order_of_depth() {
     let [red, blue] = [LinearRgba::RED, LinearRgba::BLUE].map(fog);
@@ -40,7 +34,7 @@ fn fogs_compose_in_the_order_of_depth() {
             world.spawn(ball(CENTER - 3.0 * Vec3::Z, far));
             world.spawn(ball(CENTER, near));
         });
-        assert_eq!(bodies(&app).bodies.len(), 2);
+        assert_eq!(surfaces(&app).len(), 2);
         let light = Vec3::splat(LIGHT);
         let [sent_near, sent_far] = [near, far].map(|m| m.medium.reflected(2.0, light));
         let [left_near, left_far] = [near, far].map(|m| m.medium.transmitted(2.0));
@@ -129,8 +123,10 @@ fn smoke_over_a_pool_is_seen_before_it_and_through_it() {
     };
     let mut app = lit(scene);
     let order = |app: &App| {
-        let bodies = bodies(app).bodies.iter();
-        bodies.map(|body| body.plan.index_one).collect::<Vec<_>>()
+        let surfaces = surfaces(app).into_iter();
+        surfaces
+            .map(|(surface, _)| surface.plan().unwrap().index_one)
+            .collect::<Vec<_>>()
     };
     for (eye, smoke_first) in [(vec3(0.0, 2.5, 0.0), false), (vec3(0.0, -4.0, -2.0), true)] {
         let pose = Transform::from_translation(eye).looking_at(smoke, Vec3::Y);

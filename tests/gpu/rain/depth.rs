@@ -142,7 +142,10 @@ fn a_shelter_without_volume_keeps_no_rain_off() {
     let mut app = show_plain(white_rain(20.0, 10.0));
     let wet = mean(&radiance(&app));
     let above = Transform::from_xyz(0.0, 60.0, 0.0);
-    for (half_size, scale) in [(Vec3::NAN, Vec3::ONE), (Vec3::splat(30.0), Vec3::ZERO)] {
+    for (half_size, scale, named) in [
+        (Vec3::NAN, Vec3::ONE, "entity"),
+        (Vec3::splat(30.0), Vec3::ZERO, "shelter"),
+    ] {
         let world = app.world_mut();
         let bundle = (RainShelter { half_size }, above.with_scale(scale));
         // Other tests' apps say much of entities with small numbers.
@@ -150,7 +153,7 @@ fn a_shelter_without_volume_keeps_no_rain_off() {
         world.entity_mut(roof).insert(bundle);
         settle(&mut app).unwrap();
         assert_eq!(mean(&radiance(&app)), wet);
-        assert_eq!(log::count(&format!("shelter {roof}")), 1);
+        assert_eq!(log::count(&format!("{named} {roof}")), 1);
     }
 }
 

@@ -74,7 +74,7 @@ fn the_same_seed_rains_the_same_and_another_does_not() {
                 method,
                 ..white_rain(20.0, 4.0)
             });
-            app.world_mut().resource_mut::<RainStreaks>().seed = seed;
+            app.world_mut().resource_mut::<RainStreakSettings>().seed = seed;
             set_time_step(&mut app, Duration::from_millis(16));
             step(&mut app, 5);
             app
@@ -117,7 +117,9 @@ fn without_a_renderer_rain_comes_and_goes() {
 #[test]
 fn a_hitch_changes_no_exposure() {
     let mut app = show_plain(white_rain(20.0, 4.0));
-    app.world_mut().resource_mut::<RainStreaks>().exposure = Exposure::FrameTime;
+    app.world_mut()
+        .resource_mut::<RainStreakSettings>()
+        .exposure = Exposure::FrameTime;
     let exposure = |app: &App| app.world().resource::<BakedStreaks>().exposure();
     set_time_step(&mut app, Duration::from_secs_f64(1.0 / 60.0));
     step(&mut app, 60);
@@ -153,7 +155,7 @@ fn what_makes_no_sense_is_said_once() {
     let camera = (0..1000).map(|_| world.spawn_empty().id()).last().unwrap();
     let bundle = self::camera(&VIEW, white_rain(20.0, 5.0));
     world.entity_mut(camera).insert(bundle);
-    let said = |what: &str| log::count(&format!("camera {camera}: `Rain::{what}"));
+    let said = |what: &str| log::count(&format!("entity {camera}: `Rain::{what}"));
     assert_eq!(said(""), 0);
     for frame in 0..3 {
         // Set anew in every frame, as by an animation.

@@ -17,7 +17,7 @@ use bevy::{
 use bevy_fluid::{
     prelude::*,
     rain::{
-        BakedStreaks, Exposure, RainMethod, RainQuads, RainShelter, RainStreaks,
+        BakedStreaks, Exposure, RainMethod, RainQuads, RainShelter, RainStreakSettings,
         drops::{LARGEST, SMALLEST, extinction, extinction_between},
         phase::phase,
     },
@@ -71,7 +71,7 @@ fn show(view: &View, rain: Rain, exposure: f32, scene: impl FnOnce(&mut World)) 
         app.add_plugins(RainPlugin {
             synchronous_bake: true,
         })
-        .insert_resource(RainStreaks {
+        .insert_resource(RainStreakSettings {
             exposure: Exposure::Seconds(exposure),
             ..default()
         });

@@ -1,7 +1,11 @@
 //! What is reflected, what is absorbed and what is left.
 
 use bevy::prelude::*;
-use bevy_fluid::{Fresnel, Refractions, ScreenSpaceFluid, render::Layers};
+use bevy_fluid::{
+    prelude::ScreenSpaceFluid,
+    render::Layers,
+    settings::{Fresnel, Refractions},
+};
 
 use crate::common::*;
 

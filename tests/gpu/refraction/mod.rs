@@ -5,9 +5,9 @@ mod light;
 use crate::common::*;
 use bevy::{math::DVec3, prelude::*};
 use bevy_fluid::{
-    Medium, Refractions, ScreenSpaceFluid, Search,
     prelude::*,
     render::{Layers, SearchStatus},
+    settings::{Refractions, Search},
 };
 use fluid_stage::TextureData;
 

@@ -8,7 +8,7 @@ mod script;
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
-use bevy_fluid::{ScreenSpaceFluid, prelude::*};
+use bevy_fluid::prelude::*;
 use fluid_stage::{capture, resize};
 
 use crate::{common::*, heap};

@@ -2,8 +2,11 @@
 
 use bevy::{camera::Viewport, prelude::*};
 use bevy_fluid::{
-    Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NormalAverage, PlaneFit, Refractions,
-    ScreenSpaceFluid, Search, Smoothing, SurfaceKernel, prelude::*,
+    prelude::*,
+    settings::{
+        Bilateral, CurvatureFlow, FluidDebugView, Fresnel, NormalAverage, PlaneFit, Refractions,
+        Search, Smoothing,
+    },
 };
 use fluid_stage::{headless_app, resize, step, validation_errors};
 

@@ -18,10 +18,10 @@ use bevy_egui::{
     input::{EguiInputEvent, FocusedNonWindowEguiContext},
 };
 use bevy_fluid::{
-    FluidDebugView, FluidInspectorPlugin, Refractions, ScreenSpaceFluid, Smoothing, SurfaceKernel,
     diagnostics,
-    inspector::{FluidInspector, inspector_wants_pointer},
+    inspector::{FluidInspector, FluidInspectorPlugin, inspector_wants_pointer},
     prelude::*,
+    settings::{FluidDebugView, Refractions, Smoothing},
 };
 use core::time::Duration;
 use fluid_stage::{ball, capture, headless_app, set_time_step, settle, step, validation_errors};
@@ -46,7 +46,8 @@ fn show() -> App {
 fn show_with(more: impl FnOnce(&mut App)) -> App {
     let mut app = headless_app(SIZE, |app| {
         more(app);
-        app.add_plugins((FluidPlugin::default(), FluidInspectorPlugin::default()))
+        app.add_plugins(FluidPlugin::default())
+            .add_plugins((RecordingPlugin, FluidInspectorPlugin::default()))
             .init_resource::<CameraMoves>()
             .add_systems(
                 Update,

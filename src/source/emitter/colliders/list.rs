@@ -10,6 +10,7 @@ use super::{
     ParticleCollider,
     moving::{Collider, ColliderPath, Reach, overlaps},
 };
+use crate::settings::Checked;
 
 /// All colliders during a step.
 #[derive(Debug)]
@@ -41,7 +42,7 @@ impl Colliders {
     /// Collects all colliders of this step.
     pub(in crate::source::emitter) fn gather(
         &mut self,
-        colliders: &mut Query<(Entity, &ParticleCollider, &mut ColliderPath)>,
+        colliders: &mut Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
         transforms: &TransformHelper,
     ) {
         self.list.clear();

@@ -9,7 +9,10 @@ pub(super) use self::{
     list::Colliders,
     moving::{Collider, ColliderPath},
 };
-use crate::{range::SettingRange, source::solid::SolidShape};
+use crate::{
+    settings::{Checked, SettingRange, Settings},
+    source::solid::SolidShape,
+};
 
 /// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
 /// follows the transform of its entity, scale included; a collider that moves or turns carries
@@ -32,7 +35,7 @@ use crate::{range::SettingRange, source::solid::SolidShape};
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(Transform, ColliderPath)]
+#[require(Transform, ColliderPath, Checked<Self>)]
 pub struct ParticleCollider {
     /// Its shape. Default: the ground.
     pub shape: SolidShape,
@@ -67,6 +70,8 @@ impl ParticleCollider {
         Self::DEFAULT
     }
 }
+
+impl Settings for ParticleCollider {}
 
 impl Default for ParticleCollider {
     fn default() -> Self {

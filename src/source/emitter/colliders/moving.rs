@@ -58,7 +58,6 @@ impl Collider {
         transform: &GlobalTransform,
         path: &mut ColliderPath,
     ) -> Option<Self> {
-        let collider = collider.clamped();
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         if !(translation.is_finite() && rotation.is_normalized()) {
             return None;

@@ -15,13 +15,12 @@ use super::{
     pattern::FramePattern,
 };
 use crate::{
-    range::SettingRange,
+    settings::{Checked, SettingRange, Settings},
     source::particles::{FluidParticles, ParticleSpace},
 };
 
 /// Frames of the clock may be a little short.
 const TOLERANCE: f64 = 1e-3;
-const MAX_RATE: f32 = 10_000.0;
 
 /// Writes the [`FluidParticles`] on its entity to numbered files, in the format of their extension,
 /// with velocities and ids where they are known, and a `.fluid.ron` for playing them.
@@ -36,17 +35,17 @@ const MAX_RATE: f32 = 10_000.0;
 /// times. A file that cannot be written is logged once, with its path, and ends the recording until
 /// the component changes. [`WrittenFrames`] has the counts.
 ///
-/// A rate out of range ends the recording too; a queue below 1 is clamped to 1.
+/// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
-#[require(FluidParticles, WrittenFrames)]
+#[require(FluidParticles, WrittenFrames, Checked<Self>)]
 pub struct RecordingWriter {
     /// Names of the files, see [`FramePattern`]: a file system path with one number. Missing
     /// folders are created, and existing files are replaced. Another pattern starts a new
     /// recording.
     pub frames: String,
-    /// Frames per second of the app's [`Time`]. Range > 0..=10,000, default 30.
-    #[reflect(@SettingRange::new(0.1, 1e4).unit("1/s").logarithmic())]
+    /// Frames per second of the app's [`Time`]. Unit: 1/s, range 0.001..=10,000, default 30.
+    #[reflect(@SettingRange::new(0.1, 1e4).unit("1/s").logarithmic().valid(1e-3, 1e4))]
     pub rate: f32,
     /// Whether writing and the recording's clock are paused. Default: false.
     pub paused: bool,
@@ -55,6 +54,8 @@ pub struct RecordingWriter {
     #[reflect(@SettingRange::new(1.0, 256.0).unit("frames").logarithmic().open())]
     pub queue: usize,
 }
+
+impl Settings for RecordingWriter {}
 
 impl Default for RecordingWriter {
     fn default() -> Self {
@@ -81,16 +82,17 @@ pub(in crate::source::recording) fn record(
     mut writers: Query<(
         Entity,
         Ref<RecordingWriter>,
+        &Checked<RecordingWriter>,
         &mut WrittenFrames,
         &FluidParticles,
     )>,
     transforms: TransformHelper,
     time: Res<Time>,
 ) {
-    for (entity, writer, mut written, particles) in &mut writers {
+    for (entity, set, writer, mut written, particles) in &mut writers {
         let written = &mut *written;
         written.collect();
-        if writer.is_changed() {
+        if set.is_changed() {
             written.error = None;
             if written.pattern != writer.frames {
                 written.restart(&writer.frames);
@@ -102,11 +104,11 @@ pub(in crate::source::recording) fn record(
         if written.last.is_some() {
             written.elapsed += time.delta_secs_f64();
         }
-        let result = frame_due(&writer, written).and_then(|due| {
+        let result = frame_due(writer, written).and_then(|due| {
             let Some((number, pattern)) = due else {
                 return Ok(());
             };
-            if written.jobs.len() >= writer.queue.max(1) {
+            if written.jobs.len() >= writer.queue {
                 if written.dropped == 0 {
                     let frames = &writer.frames;
                     warn!("{frames} is written too slowly: frames are left out");
@@ -116,7 +118,7 @@ pub(in crate::source::recording) fn record(
             }
             let place = transforms.compute_global_transform(entity);
             let place = place.unwrap_or_default();
-            start(number, &pattern, &writer, written, particles, &place)
+            start(number, &pattern, writer, written, particles, &place)
         });
         if let Err(error) = result {
             written.fail(&error.to_string());
@@ -133,13 +135,6 @@ fn frame_due(
         pattern: writer.frames.clone(),
         reason,
     };
-    if !(writer.rate > 0.0 && writer.rate <= MAX_RATE) {
-        return Err(RecordingError::Value {
-            pattern: writer.frames.clone(),
-            field: "rate",
-            value: writer.rate.into(),
-        });
-    }
     let number = (written.elapsed * f64::from(writer.rate) + TOLERANCE) as u32;
     if written.last.is_some_and(|last| number <= last) {
         return Ok(None);

@@ -3,11 +3,12 @@
 use bevy::{ecs::change_detection::Tick, prelude::*, transform::helper::TransformHelper};
 
 use crate::{
-    complaints::Complaints,
+    settings::Checked,
     source::emitter::ParticleEmitter,
     source::particles::{FluidParticles, ParticleSpace},
     source::salva::{
         SalvaError, SalvaFluid,
+        error::Warned,
         runner::Simulation,
         world::{Command, Limits, Newborn, Substance},
     },
@@ -31,7 +32,6 @@ const SAME_RADIUS: f32 = 1e-3;
 
 impl From<&SalvaFluid> for Substance {
     fn from(fluid: &SalvaFluid) -> Self {
-        let fluid = fluid.clamped();
         Self {
             density: fluid.density,
             viscosity: fluid.viscosity,
@@ -48,30 +48,23 @@ pub(crate) fn gather_fluids(
     mut simulation: ResMut<Simulation>,
     mut fluids: Query<(
         Entity,
-        Ref<SalvaFluid>,
+        Ref<Checked<SalvaFluid>>,
         &mut FluidParticles,
-        Option<&ParticleEmitter>,
+        Option<&Checked<ParticleEmitter>>,
     )>,
     mut gone: RemovedComponents<SalvaFluid>,
     mut without_particles: RemovedComponents<FluidParticles>,
     transforms: TransformHelper,
-    mut complaints: Local<Complaints>,
-    mut settings_complaints: Local<Complaints>,
+    mut warned: Local<Warned>,
 ) {
     for entity in gone.read().chain(without_particles.read()) {
-        complaints.forget(entity);
-        settings_complaints.forget(entity);
+        warned.forget(entity);
         if simulation.fluids.remove(&entity).is_some() {
             simulation.tell(Command::RemoveFluid(entity.to_bits()));
         }
     }
     for (entity, fluid, mut particles, emitter) in &mut fluids {
-        if fluid.is_changed()
-            && let Some(error) = settings_complaints.of(entity, fluid.validate())
-        {
-            warn!("fluid {entity}: {error}; it is clamped");
-        }
-        let asked = emitter.map(|emitter| emitter.clamped().particle_radius);
+        let asked = emitter.map(|emitter| emitter.particle_radius);
         if asked.is_none()
             && let Some(entry) = simulation.fluids.get_mut(&entity)
             && entry.limits.take().is_some()
@@ -79,8 +72,8 @@ pub(crate) fn gather_fluids(
             // Particles that the emitter limited stay now.
             simulation.tell(Command::Limit(entity.to_bits(), Limits::default()));
         }
-        let checked = simulation.take_fluid(entity, &fluid, &mut particles, asked, &transforms);
-        if let Some(error) = complaints.of(entity, checked) {
+        let taken = simulation.take_fluid(entity, &fluid, &mut particles, asked, &transforms);
+        if let Some(error) = warned.news(entity, taken) {
             warn!("fluid {entity} is not simulated: {error}");
         }
     }
@@ -92,7 +85,7 @@ impl Simulation {
     fn take_fluid(
         &mut self,
         entity: Entity,
-        fluid: &Ref<SalvaFluid>,
+        fluid: &Ref<Checked<SalvaFluid>>,
         particles: &mut Mut<FluidParticles>,
         asked: Option<f32>,
         transforms: &TransformHelper,
@@ -123,7 +116,7 @@ impl Simulation {
             }
         }
         if fluid.is_changed() {
-            self.tell(Command::Substance(id, Substance::from(&**fluid)));
+            self.tell(Command::Substance(id, Substance::from(&***fluid)));
         }
         Ok(())
     }
@@ -157,7 +150,7 @@ impl Simulation {
         let places = particles.positions.iter();
         let newborn = Newborn {
             positions: places.map(|&place| space.transform_point(place)).collect(),
-            velocities: vec![fluid.clamped().velocity],
+            velocities: vec![fluid.velocity],
         };
         // Those of particles that have been replaced.
         particles.velocities.clear();

@@ -3,9 +3,10 @@
 use bevy::{ecs::message::MessageCursor, prelude::*, transform::helper::TransformHelper};
 
 use crate::{
-    complaints::Complaints,
+    settings::Checked,
     source::salva::{
         SalvaBody, SalvaBoundary, SalvaError, SalvaLoad, SalvaShape,
+        error::Warned,
         runner::Simulation,
         shape::{recipe, split},
         world::{Command, Contact, Motion, Traits},
@@ -63,7 +64,7 @@ type Solids<'w, 's, T, F = ()> = Query<
     's,
     (
         Entity,
-        Ref<'static, T>,
+        &'static Checked<T>,
         Option<&'static Mesh3d>,
         Has<SalvaLoad>,
     ),
@@ -81,19 +82,19 @@ pub(crate) fn gather_solids(
     changes: Option<Res<Messages<AssetEvent<Mesh>>>>,
     mut cursor: Local<MessageCursor<AssetEvent<Mesh>>>,
     transforms: TransformHelper,
-    mut complaints: Local<Complaints>,
-    mut settings_complaints: Local<Complaints>,
+    mut warned: Local<Warned>,
+    mut warned_surfaces: Local<Warned>,
 ) {
     for entity in gone.read().chain(gone_bodies.read()) {
-        complaints.forget(entity);
-        settings_complaints.forget(entity);
+        warned.forget(entity);
+        warned_surfaces.forget(entity);
         if simulation.solids.remove(&entity).is_some() {
             simulation.tell(Command::RemoveSolid(entity.to_bits()));
         }
     }
     for id in core::mem::take(&mut simulation.unsampled) {
         let entity = Entity::from_bits(id);
-        if let Some(error) = settings_complaints.of(entity, Err(SalvaError::Surface)) {
+        if let Some(error) = warned_surfaces.news(entity, Err(SalvaError::Surface)) {
             warn!("boundary {entity}: {error}");
         }
     }
@@ -106,46 +107,35 @@ pub(crate) fn gather_solids(
     }
     let meshes = meshes.as_deref();
     for (entity, boundary, mesh, feels) in &boundaries {
-        if boundary.is_changed()
-            && let Some(error) = settings_complaints.of(entity, boundary.validate())
-        {
-            warn!("boundary {entity}: {error}; it is clamped");
-        }
-        let own = boundary.clamped();
         let traits = Traits {
             motion: Motion::Kinematic,
             contact: Contact {
-                friction: own.friction,
-                restitution: own.restitution,
+                friction: boundary.friction,
+                restitution: boundary.restitution,
             },
             feels,
         };
-        let checked = simulation.take_solid(entity, own.shape, traits, mesh, meshes, &transforms);
-        if let Some(error) = complaints.of(entity, checked) {
+        let taken =
+            simulation.take_solid(entity, boundary.shape, traits, mesh, meshes, &transforms);
+        if let Some(error) = warned.news(entity, taken) {
             warn!("boundary {entity} is not simulated: {error}");
         }
     }
     for (entity, body, mesh, feels) in &bodies {
-        if body.is_changed()
-            && let Some(error) = settings_complaints.of(entity, body.validate())
-        {
-            warn!("body {entity}: {error}; it is clamped");
-        }
-        let own = body.clamped();
         let traits = Traits {
             motion: Motion::Dynamic {
-                density: own.density,
-                velocity: own.velocity,
-                angular_velocity: own.angular_velocity,
+                density: body.density,
+                velocity: body.velocity,
+                angular_velocity: body.angular_velocity,
             },
             contact: Contact {
-                friction: own.friction,
-                restitution: own.restitution,
+                friction: body.friction,
+                restitution: body.restitution,
             },
             feels,
         };
-        let checked = simulation.take_solid(entity, own.shape, traits, mesh, meshes, &transforms);
-        if let Some(error) = complaints.of(entity, checked) {
+        let taken = simulation.take_solid(entity, body.shape, traits, mesh, meshes, &transforms);
+        if let Some(error) = warned.news(entity, taken) {
             warn!("body {entity} is not simulated: {error}");
         }
     }

@@ -1,0 +1,230 @@
+//! The textures that a surface's stages hand on to each other.
+
+use bevy::{
+    prelude::*,
+    render::render_resource::{Texture, TextureFormat},
+};
+
+use super::{
+    Gpu, Target,
+    support::{FluidSupport, LAYER_FORMAT},
+    targets::ensure,
+    tiles::{TILE, TILE_FORMAT},
+};
+use crate::{
+    render::surface::{Surface, Variant},
+    settings::FluidDebugView,
+};
+
+/// Front and back normals, octahedral, both towards the viewer.
+pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// Radiance, and the transmitted fraction of red.
+pub(crate) const RADIANCE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// The transmitted fractions of green and blue.
+pub(crate) const TRANSMISSION_FORMAT: TextureFormat = TextureFormat::Rg16Float;
+/// The exit ray and the flags of a path. Before rays are traced, the same texture holds layers and
+/// their slopes along x between the two halves of a separable fit, as bits of f32.
+pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
+
+/// Texels on each side that are never drawn to, so that all that reads beyond finds nothing.
+const MARGIN: i32 = 2;
+/// Sizes are rounded up to this, which holds whole tiles.
+const ROUNDING: u32 = 4 * TILE;
+
+/// The textures of a surface, which hold the part of the view that it may cover.
+///
+/// Layers hold (device depth of the front, −device depth of the back); (0, −2) means nothing. A
+/// front of exactly 1 means that the ray starts inside the liquid. A second record of exit rays, or
+/// the coverage of pixels, would be one more texture here.
+#[derive(Component, Default)]
+pub struct Layers {
+    size: UVec2,
+    origin: IVec2,
+    pub(super) tiles: Option<Target>,
+    pub(crate) bulk: Option<Target>,
+    /// Smoothing writes to this and the bulk's layers in turn, and ends in the bulk's.
+    pub(crate) scratch: Option<Target>,
+    /// Whether the bulk is splatted to the scratch texture.
+    splatted_to_scratch: bool,
+    pub(crate) bulk_normals: Option<Target>,
+    pub(crate) spray: Option<Target>,
+    pub(crate) spray_normals: Option<Target>,
+    pub(crate) radiance: Option<Target>,
+    pub(crate) transmission: Option<Target>,
+    pub(crate) exits: Option<Target>,
+    /// The accumulated path length through all particles.
+    pub(crate) thickness: Option<Target>,
+    /// The number of splats, if a debug view shows it.
+    pub(crate) overdraw: Option<Target>,
+}
+
+impl Layers {
+    /// Of all textures. Unit: pixels.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// The pixel of the view, from its upper left, at the textures' upper left texel; it may lie
+    /// outside of the view.
+    pub fn origin(&self) -> IVec2 {
+        self.origin
+    }
+
+    /// The bulk's layers after smoothing.
+    pub fn bulk(&self) -> Option<&Texture> {
+        self.bulk.as_ref().map(|it| &it.texture)
+    }
+
+    /// The bulk's normals: front in rg, back in ba.
+    pub fn bulk_normals(&self) -> Option<&Texture> {
+        self.bulk_normals.as_ref().map(|it| &it.texture)
+    }
+
+    /// The spray's layers.
+    pub fn spray(&self) -> Option<&Texture> {
+        self.spray.as_ref().map(|it| &it.texture)
+    }
+
+    /// The spray's normals: front in rg, back in ba.
+    pub fn spray_normals(&self) -> Option<&Texture> {
+        self.spray_normals.as_ref().map(|it| &it.texture)
+    }
+
+    /// The liquid's own radiance (reflected, in-scattered and emitted light), and in its alpha the
+    /// transmitted fraction of the background's red light.
+    pub fn radiance(&self) -> Option<&Texture> {
+        self.radiance.as_ref().map(|it| &it.texture)
+    }
+
+    /// The transmitted fractions of the background's green and blue light.
+    pub fn transmission(&self) -> Option<&Texture> {
+        self.transmission.as_ref().map(|it| &it.texture)
+    }
+
+    /// Exit rays and flags, in the layout of `pack_exit` in `refract.wgsl`.
+    pub fn exits(&self) -> Option<&Texture> {
+        self.exits.as_ref().map(|it| &it.texture)
+    }
+
+    /// The accumulated path length through all particles in m, if it is summed up.
+    pub fn thickness(&self) -> Option<&Texture> {
+        self.thickness.as_ref().map(|it| &it.texture)
+    }
+
+    /// Number of splats drawn at each pixel, if a camera has [`FluidDebugView::Overdraw`].
+    pub fn overdraw(&self) -> Option<&Texture> {
+        self.overdraw.as_ref().map(|it| &it.texture)
+    }
+
+    pub(super) fn tiles(&self) -> Option<&Target> {
+        self.tiles.as_ref()
+    }
+
+    /// The bulk's layers as they are splatted.
+    pub(crate) fn splatted(&self) -> &Option<Target> {
+        if self.splatted_to_scratch {
+            &self.scratch
+        } else {
+            &self.bulk
+        }
+    }
+
+    /// Moves the textures over a rectangle of the view. They are made anew if they are too small,
+    /// or more than twice as large as needed.
+    fn place(&mut self, rect: URect) {
+        self.origin = rect.min.as_ivec2() - MARGIN;
+        let needed = rect.size() + 2 * MARGIN as u32;
+        let rounded = (needed + ROUNDING - 1) / ROUNDING * ROUNDING;
+        let area = |size: UVec2| u64::from(size.x) * u64::from(size.y);
+        if needed.cmpgt(self.size).any() || area(self.size) > 2 * area(rounded) {
+            self.size = rounded;
+        }
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, support: &FluidSupport, variant: &Variant) {
+        let plan = &variant.plan;
+        let passes = plan.smoothing.layer_passes();
+        self.splatted_to_scratch = passes % 2 == 1;
+        let size = self.size;
+        let normals = !plan.accumulated;
+        let sum = support.thickness_format;
+        let counted = variant.debug_view == Some(FluidDebugView::Overdraw);
+        let tiles = size / TILE;
+        for (target, wanted, label, size, format) in [
+            (&mut self.tiles, true, "fluid_tiles", tiles, TILE_FORMAT),
+            (
+                &mut self.bulk,
+                plan.bulk,
+                "fluid_bulk_layers",
+                size,
+                LAYER_FORMAT,
+            ),
+            (
+                &mut self.scratch,
+                passes > 0,
+                "fluid_bulk_layers_scratch",
+                size,
+                LAYER_FORMAT,
+            ),
+            (
+                &mut self.bulk_normals,
+                plan.bulk && normals,
+                "fluid_bulk_normals",
+                size,
+                NORMAL_FORMAT,
+            ),
+            (
+                &mut self.spray,
+                plan.spray,
+                "fluid_spray_layers",
+                size,
+                LAYER_FORMAT,
+            ),
+            (
+                &mut self.spray_normals,
+                plan.spray && normals,
+                "fluid_spray_normals",
+                size,
+                NORMAL_FORMAT,
+            ),
+            (
+                &mut self.radiance,
+                true,
+                "fluid_radiance",
+                size,
+                RADIANCE_FORMAT,
+            ),
+            (
+                &mut self.transmission,
+                true,
+                "fluid_transmission",
+                size,
+                TRANSMISSION_FORMAT,
+            ),
+            (&mut self.exits, true, "fluid_exits", size, EXIT_FORMAT),
+            (
+                &mut self.thickness,
+                plan.accumulated,
+                "fluid_thickness",
+                size,
+                sum,
+            ),
+            (&mut self.overdraw, counted, "fluid_overdraw", size, sum),
+        ] {
+            ensure(target, wanted, gpu, label, size, format);
+        }
+    }
+}
+
+pub(super) fn prepare_layers(
+    mut surfaces: Query<(&Surface, &mut Layers)>,
+    support: Res<FluidSupport>,
+    gpu: Gpu,
+) {
+    for (surface, mut layers) in &mut surfaces {
+        if let Some(variant) = &surface.drawn {
+            layers.place(surface.rect);
+            layers.prepare(&gpu, &support, variant);
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! Splats on the GPU, and passes that draw them.
+
+use bevy::{
+    app::SubApp,
+    asset::load_embedded_asset,
+    ecs::system::SystemParam,
+    prelude::*,
+    render::{
+        GpuResourceAppExt, Render, RenderStartup, RenderSystems,
+        render_phase::TrackedRenderPass,
+        render_resource::{
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer, BufferDescriptor,
+            BufferUsages, CachedRenderPipelineId, FragmentState, PipelineCache,
+            RenderPipelineDescriptor, ShaderStages, VertexState,
+            binding_types::{storage_buffer_read_only_sized, uniform_buffer},
+        },
+        renderer::{RenderContext, RenderDevice},
+    },
+    shader::ShaderDefVal,
+};
+
+use super::{
+    Frame, FrameLayout, FrameStartup, Gpu, Group, Input, NORMAL_FORMAT, Offset, Target,
+    UniformArray, cleared,
+    pipelines::{MAX_BLEND, QUAD, fragment, one_texture_layout},
+    support::FluidSupport,
+};
+use crate::{
+    render::surface::{GpuFluid, Surface, fluids::ExtractedFluid, plan::Plan},
+    shape::Splat,
+};
+
+/// Splats in a storage buffer, uploaded only when they have changed.
+#[derive(Component, Default)]
+pub struct GpuSplats {
+    buffer: Option<Buffer>,
+    transform: Offset,
+    group: Group,
+    /// Number of times that splats have been uploaded.
+    pub uploads: u64,
+}
+
+/// The layouts of passes over splats.
+#[derive(Resource, Clone)]
+pub(crate) struct SplatLayouts {
+    /// Group 1: splats and their fluid's transform.
+    pub(crate) splats: BindGroupLayoutDescriptor,
+    /// Group 2 of a pass that compares splats with finished layers.
+    pub(crate) finished: BindGroupLayoutDescriptor,
+    normals: Handle<Shader>,
+}
+
+pub(super) fn plugin(render_app: &mut SubApp) {
+    render_app
+        .init_gpu_resource::<UniformArray<GpuFluid>>()
+        .add_systems(
+            RenderStartup,
+            (init_layouts, forget_buffers).in_set(FrameStartup),
+        )
+        .add_systems(
+            Render,
+            (
+                (upload_splats, prepare_transforms)
+                    .chain()
+                    .in_set(RenderSystems::PrepareResources),
+                prepare_groups.in_set(RenderSystems::PrepareBindGroups),
+            ),
+        );
+    render_app
+        .world_mut()
+        .register_required_components::<ExtractedFluid, GpuSplats>();
+}
+
+fn init_layouts(mut commands: Commands, assets: Res<AssetServer>) {
+    commands.insert_resource(SplatLayouts {
+        splats: BindGroupLayoutDescriptor::new(
+            "fluid_splats_layout",
+            &BindGroupLayoutEntries::sequential(
+                ShaderStages::VERTEX,
+                (
+                    storage_buffer_read_only_sized(false, None),
+                    uniform_buffer::<GpuFluid>(true),
+                ),
+            ),
+        ),
+        finished: one_texture_layout("fluid_finished_layers_layout"),
+        normals: load_embedded_asset!(assets.as_ref(), "splat_normals.wgsl"),
+    });
+}
+
+/// Drops the buffers of a lost device; the splats are still available.
+fn forget_buffers(mut fluids: Query<&mut GpuSplats>) {
+    for mut gpu in &mut fluids {
+        gpu.buffer = None;
+        gpu.group = Group::default();
+    }
+}
+
+fn upload_splats(
+    mut fluids: Query<(&mut ExtractedFluid, &mut GpuSplats)>,
+    support: Res<FluidSupport>,
+    gpu: Gpu,
+) {
+    if !support.drawing {
+        return;
+    }
+    for (mut fluid, mut splats) in &mut fluids {
+        if !fluid.fresh && (splats.buffer.is_some() || fluid.splats.is_empty()) {
+            continue;
+        }
+        fluid.fresh = false;
+        if fluid.splats.is_empty() {
+            continue;
+        }
+        let room = room(&gpu.device);
+        if fluid.splats.len() > room {
+            bevy::utils::once!(warn!(
+                "a fluid of {} particles exceeds the adapter's buffers: the first {room} are drawn",
+                fluid.splats.len()
+            ));
+            fluid.bulk = fluid.bulk.min(room as u32);
+            fluid.interior = fluid.interior.min(room as u32 - fluid.bulk);
+            fluid.spray = fluid.spray.min(room as u32 - fluid.bulk - fluid.interior);
+            fluid.splats.truncate(room);
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&fluid.splats);
+        let needed = bytes.len() as u64;
+        if splats.buffer.as_ref().is_none_or(|b| b.size() < needed) {
+            let capacity = fluid.splats.len().next_power_of_two().min(room);
+            splats.buffer = Some(gpu.device.create_buffer(&BufferDescriptor {
+                label: Some("fluid_splats"),
+                size: (capacity * size_of::<Splat>()) as u64,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        if let Some(buffer) = &splats.buffer {
+            gpu.queue.write_buffer(buffer, 0, bytes);
+        }
+        splats.uploads += 1;
+    }
+}
+
+/// How many splats fit into a buffer.
+fn room(device: &RenderDevice) -> usize {
+    let limit = device.limits();
+    let bytes = limit
+        .max_storage_buffer_binding_size
+        .min(limit.max_buffer_size);
+    bytes as usize / size_of::<Splat>()
+}
+
+/// Writes the transform of every fluid.
+fn prepare_transforms(
+    mut fluids: Query<(&ExtractedFluid, &mut GpuSplats)>,
+    mut uniforms: ResMut<UniformArray<GpuFluid>>,
+    gpu: Gpu,
+) {
+    uniforms.clear();
+    for (fluid, mut splats) in &mut fluids {
+        splats.transform = uniforms.push(GpuFluid {
+            world_from_local: fluid.transform.to_matrix(),
+            radius: fluid.local_radius,
+        });
+    }
+    uniforms.write(&gpu);
+}
+
+fn prepare_groups(
+    mut fluids: Query<&mut GpuSplats>,
+    layouts: Res<SplatLayouts>,
+    uniforms: Res<UniformArray<GpuFluid>>,
+    gpu: Gpu,
+) {
+    for mut splats in &mut fluids {
+        let GpuSplats { buffer, group, .. } = &mut *splats;
+        // Requested only here: a device without storage buffers has no such layout, nor any splats.
+        if let Some(buffer) = buffer {
+            let inputs = [Input::buffer(buffer), uniforms.input()];
+            group.prepare(&gpu, "fluid_splats", &layouts.splats, &inputs);
+        }
+    }
+}
+
+/// Which splats are drawn: they lie in the order bulk, interior, spray.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Class {
+    Bulk,
+    Spray,
+    All,
+}
+
+/// Draws the splats of a surface.
+#[derive(SystemParam)]
+pub(crate) struct Splats<'w, 's> {
+    fluids: Query<'w, 's, &'static GpuSplats>,
+    pub(crate) cache: Res<'w, PipelineCache>,
+}
+
+impl Splats<'_, '_> {
+    /// Draws the splats of one class of all of a surface's fluids.
+    pub(crate) fn draw<'a>(
+        &'a self,
+        pass: &mut TrackedRenderPass<'a>,
+        surface: &Surface,
+        plan: &Plan,
+        class: Class,
+    ) {
+        for fluid in &surface.fluids {
+            let Ok(splats) = self.fluids.get(fluid.entity) else {
+                continue;
+            };
+            let Some(group) = splats.group.get() else {
+                continue;
+            };
+            let bulk = fluid.bulk + if plan.interior { fluid.interior } else { 0 };
+            let spray = fluid.bulk + fluid.interior;
+            let range = match class {
+                Class::Bulk => 0..bulk,
+                Class::Spray => spray..spray + fluid.spray,
+                Class::All => 0..spray + fluid.spray,
+            };
+            if !range.is_empty() {
+                pass.set_bind_group(1, group, &[splats.transform.bytes()]);
+                pass.draw(0..4, range);
+            }
+        }
+    }
+
+    /// A pass that sums up a value over splats.
+    pub(crate) fn sum(
+        &self,
+        ctx: &mut RenderContext,
+        label: &'static str,
+        (surface, frame): (&Surface, &Frame),
+        target: &Option<Target>,
+        pipeline: CachedRenderPipelineId,
+        classes: &[Class],
+    ) {
+        let (Some(plan), Some(target), Some(pipeline)) = (
+            surface.plan(),
+            target,
+            self.cache.get_render_pipeline(pipeline),
+        ) else {
+            return;
+        };
+        let mut pass = frame.begin(ctx, label, &[cleared(target, [0.0; 4])], None, pipeline);
+        for &class in classes {
+            self.draw(&mut pass, surface, plan, class);
+        }
+    }
+
+    /// Normals of the ellipsoids that made the finished layers of a class: its splats once more.
+    pub(crate) fn normals(
+        &self,
+        ctx: &mut RenderContext,
+        (surface, frame): (&Surface, &Frame),
+        finished: &Group,
+        target: &Option<Target>,
+        pipeline: CachedRenderPipelineId,
+        class: Class,
+    ) {
+        let (Some(plan), Some(target), Some(finished), Some(pipeline)) = (
+            surface.plan(),
+            target,
+            finished.get(),
+            self.cache.get_render_pipeline(pipeline),
+        ) else {
+            return;
+        };
+        let targets = [cleared(target, [-2.0; 4])];
+        let mut pass = frame.begin(ctx, "fluid_splat_normals", &targets, None, pipeline);
+        pass.set_bind_group(2, finished, &[]);
+        self.draw(&mut pass, surface, plan, class);
+    }
+}
+
+/// A pass over splats: `layouts` are those of groups 2 and up.
+pub(crate) fn splat_pipeline(
+    label: &'static str,
+    frame: &FrameLayout,
+    splats: &SplatLayouts,
+    layouts: impl IntoIterator<Item = BindGroupLayoutDescriptor>,
+    vertex_defs: Vec<ShaderDefVal>,
+    fragment: FragmentState,
+) -> RenderPipelineDescriptor {
+    RenderPipelineDescriptor {
+        label: Some(label.into()),
+        layout: [frame.layout.clone(), splats.splats.clone()]
+            .into_iter()
+            .chain(layouts)
+            .collect(),
+        vertex: VertexState {
+            shader: fragment.shader.clone(),
+            shader_defs: vertex_defs,
+            entry_point: Some("vertex".into()),
+            buffers: vec![],
+        },
+        primitive: QUAD,
+        fragment: Some(fragment),
+        ..default()
+    }
+}
+
+/// The pipeline of [`Splats::normals`].
+pub(crate) fn normals_pipeline(
+    frame: &FrameLayout,
+    splats: &SplatLayouts,
+) -> RenderPipelineDescriptor {
+    let label = "fluid_splat_normals_pipeline";
+    let finished = [splats.finished.clone()];
+    // If two ellipsoids made the same pixel, either normal is valid.
+    let fragment = fragment(&splats.normals, vec![], &[NORMAL_FORMAT], Some(MAX_BLEND));
+    splat_pipeline(label, frame, splats, finished, vec![], fragment)
+}

@@ -1,0 +1,140 @@
+//! Textures that passes draw to, and how much memory they take.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{
+            Extent3d, Texture, TextureDataOrder, TextureDescriptor, TextureDimension,
+            TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
+        },
+        renderer::{RenderDevice, RenderQueue},
+    },
+};
+
+use super::{Gpu, support::LAYER_FORMAT};
+
+/// The memory of all textures that passes of fluids draw to, of all cameras.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct TextureMemory(Arc<AtomicU64>);
+
+impl TextureMemory {
+    /// The sum in this moment.
+    pub fn bytes(&self) -> u64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// A part of the memory, until it is dropped.
+#[derive(Debug)]
+struct Share {
+    bytes: u64,
+    memory: TextureMemory,
+}
+
+impl Drop for Share {
+    fn drop(&mut self) {
+        self.memory.0.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+/// A texture that a pass draws to.
+#[derive(Debug)]
+pub(crate) struct Target {
+    pub(crate) texture: Texture,
+    pub(crate) view: TextureView,
+    _share: Option<Share>,
+}
+
+impl Target {
+    fn new(gpu: &Gpu, label: &'static str, size: UVec2, format: TextureFormat) -> Self {
+        let texture = gpu.device.create_texture(&TextureDescriptor {
+            label: Some(label),
+            size: extent(size),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC
+                | TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        // Of all formats in use; depth is as large as a float.
+        let texel = format.block_copy_size(None).unwrap_or(4);
+        let bytes = u64::from(size.x) * u64::from(size.y) * u64::from(texel);
+        let memory = gpu.memory.clone();
+        memory.0.fetch_add(bytes, Ordering::Relaxed);
+        Self {
+            view: texture.create_view(&TextureViewDescriptor::default()),
+            texture,
+            _share: Some(Share { bytes, memory }),
+        }
+    }
+}
+
+fn extent(size: UVec2) -> Extent3d {
+    Extent3d {
+        width: size.x,
+        height: size.y,
+        depth_or_array_layers: 1,
+    }
+}
+
+/// Keeps a target of a size while it is wanted.
+pub(crate) fn ensure(
+    target: &mut Option<Target>,
+    wanted: bool,
+    gpu: &Gpu,
+    label: &'static str,
+    size: UVec2,
+    format: TextureFormat,
+) {
+    if !wanted {
+        *target = None;
+        return;
+    }
+    let fits = |it: &Target| it.texture.size() == extent(size) && it.texture.format() == format;
+    if !target.as_ref().is_some_and(fits) {
+        // The old one is freed before.
+        *target = None;
+        *target = Some(Target::new(gpu, label, size, format));
+    }
+}
+
+/// One texel of "nothing here", for textures that a surface lacks.
+#[derive(Resource)]
+pub(crate) struct Placeholder(pub(crate) Target);
+
+pub(super) fn init_placeholder(
+    mut commands: Commands,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    let nothing = [0.0f32, -2.0];
+    let texture = device.create_texture_with_data(
+        &queue,
+        &TextureDescriptor {
+            label: Some("fluid_no_layers"),
+            size: extent(UVec2::ONE),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: LAYER_FORMAT,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        },
+        TextureDataOrder::default(),
+        bytemuck::cast_slice(&nothing),
+    );
+    commands.insert_resource(Placeholder(Target {
+        view: texture.create_view(&TextureViewDescriptor::default()),
+        texture,
+        _share: None,
+    }));
+}

@@ -1,0 +1,173 @@
+//! Surfaces: fluids of equal material in a view, which are drawn as one. What is known of them
+//! before anything is drawn: who belongs together, where they are, what work they need.
+
+pub(crate) mod bounds;
+pub(crate) mod fluids;
+mod grouping;
+pub(crate) mod plan;
+mod prepare;
+pub(crate) mod reasons;
+mod uniforms;
+mod variant;
+pub(crate) mod views;
+
+use bevy::{
+    prelude::*,
+    render::{
+        ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems,
+        sync_component::SyncComponentPlugin,
+    },
+    shader::load_shader_library,
+};
+
+use self::{fluids::extract_fluids, reasons::PlanReports, views::extract_views};
+pub(crate) use self::{
+    uniforms::{GpuFluid, GpuSurface},
+    variant::Variant,
+};
+use crate::{settings::ScreenSpaceFluid, source::particles::FluidParticles};
+
+/// The steps that prepare surfaces for drawing, in this order, in
+/// [`RenderSystems::PrepareResources`]. Bind groups follow in [`RenderSystems::PrepareBindGroups`].
+#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
+pub(crate) enum SurfaceSystems {
+    /// Fluids are grouped to surfaces, and their passes planned.
+    Plan,
+    /// Stages request the pipelines of the wanted variants.
+    Request,
+    /// Each surface settles for a variant whose pipelines are compiled.
+    Choose,
+    /// Stages prepare textures and uniforms for that variant.
+    Resources,
+}
+
+/// Fluids of equal material in a view: an entity of the render world that lives while it is seen.
+///
+/// It is known by its view and the first of its fluids. Stages add their components as required
+/// components.
+#[derive(Component)]
+pub struct Surface {
+    pub(crate) view: Entity,
+    pub(crate) fluids: Vec<DrawnFluid>,
+    /// The variant for this frame.
+    pub(crate) wanted: Variant,
+    /// The variant to draw: the last one whose pipelines are all compiled.
+    pub(crate) drawn: Option<Variant>,
+    /// Whether pipelines of the wanted variant are still being compiled.
+    pub(crate) waiting: bool,
+    /// The pixels of the view that it may cover.
+    pub(crate) rect: URect,
+    /// Nearest and farthest depth of its bounding box. Unit: m, in the view.
+    pub(crate) depths: Vec2,
+    pub(crate) uniform: GpuSurface,
+}
+
+impl Surface {
+    /// The plan that it is drawn by; `None` while its first pipelines are being compiled.
+    pub fn plan(&self) -> Option<&plan::Plan> {
+        self.drawn.as_ref().map(|variant| &variant.plan)
+    }
+
+    /// The pixels of the view, from its upper left, that it may cover.
+    pub fn rect(&self) -> URect {
+        self.rect
+    }
+}
+
+/// Which splats of a fluid are drawn: they lie in the order bulk, interior, spray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DrawnFluid {
+    pub(crate) entity: Entity,
+    pub(crate) bulk: u32,
+    pub(crate) interior: u32,
+    pub(crate) spray: u32,
+}
+
+/// The surfaces of a view; a view without any lacks this component.
+#[derive(Component)]
+pub struct ViewSurfaces {
+    /// Entities with a [`Surface`], from far to near.
+    pub surfaces: Vec<Entity>,
+    /// The view's rectangle in the camera's target.
+    pub(crate) viewport: URect,
+    pub(crate) samples: u32,
+}
+
+impl ViewSurfaces {
+    /// The view's rectangle in the camera's target. Unit: pixels.
+    pub fn viewport(&self) -> URect {
+        self.viewport
+    }
+
+    /// Whether surfaces may be seen through each other.
+    pub(crate) fn several(&self) -> bool {
+        self.surfaces.len() > 1
+    }
+}
+
+/// Whether plans may leave out unnecessary work, in the render world.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(crate) struct Shortcuts(pub(crate) bool);
+
+/// `can_draw` tells whether the adapter can draw fluids at all.
+pub(crate) fn plugin<M>(app: &mut App, shortcuts: bool, can_draw: impl SystemCondition<M>) {
+    load_shader_library!(app, "types.wgsl");
+    let reports = PlanReports::default();
+    app.insert_resource(reports.clone());
+    // Synced components need a renderer, if only to be despawned.
+    if app.get_sub_app(RenderApp).is_some() {
+        app.add_plugins((
+            SyncComponentPlugin::<ScreenSpaceFluid>::default(),
+            SyncComponentPlugin::<FluidParticles>::default(),
+        ));
+    }
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .insert_resource(reports)
+        .insert_resource(Shortcuts(shortcuts))
+        .add_systems(RenderStartup, forget_surfaces)
+        .add_systems(ExtractSchedule, (extract_fluids, extract_views))
+        .configure_sets(
+            Render,
+            (
+                SurfaceSystems::Plan,
+                SurfaceSystems::Request,
+                SurfaceSystems::Choose,
+                SurfaceSystems::Resources,
+            )
+                .chain()
+                .in_set(RenderSystems::PrepareResources)
+                .after(bevy::render::view::prepare_view_uniforms),
+        )
+        .add_systems(
+            Render,
+            (
+                prepare::prepare_surfaces
+                    .in_set(SurfaceSystems::Plan)
+                    .run_if(can_draw),
+                choose_variants.in_set(SurfaceSystems::Choose),
+            ),
+        );
+}
+
+/// Everything of a lost device is dropped; the next frame makes it anew.
+fn forget_surfaces(surfaces: Query<Entity, With<Surface>>, mut commands: Commands) {
+    for surface in &surfaces {
+        commands.entity(surface).despawn();
+    }
+}
+
+/// While the pipelines of the wanted variant are being compiled, a surface is drawn in its last
+/// one, so that the liquid does not vanish meanwhile.
+fn choose_variants(mut surfaces: Query<&mut Surface>) {
+    for mut surface in &mut surfaces {
+        let wanted = surface.wanted;
+        if !surface.waiting {
+            surface.drawn = Some(wanted);
+        } else if surface.drawn.is_some_and(|drawn| !drawn.fits(&wanted)) {
+            surface.drawn = None;
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The Rust twins of `types.wgsl`: the same fields under the same names.
+
+use bevy::{prelude::*, render::render_resource::ShaderType};
+
+use crate::material::{FluidMaterial, Thickness};
+
+/// Transform and particle radius of a fluid.
+#[derive(Clone, Copy, Default, PartialEq, ShaderType)]
+pub(crate) struct GpuFluid {
+    pub(crate) world_from_local: Mat4,
+    pub(crate) radius: f32,
+}
+
+/// Appearance of a surface in a view, in view units.
+#[derive(Clone, Copy, Default, PartialEq, ShaderType)]
+pub(crate) struct GpuSurface {
+    pub(crate) extinction: Vec3,
+    pub(crate) refractive_index: f32,
+    pub(crate) scattering: Vec3,
+    pub(crate) perceptual_roughness: f32,
+    pub(crate) emission: Vec3,
+    pub(crate) radius: f32,
+    pub(crate) behind: Vec4,
+    pub(crate) softness: f32,
+}
+
+impl GpuSurface {
+    /// A surface of particles of `radius` in the world, for a view whose metres are `view_scale`
+    /// times the world's.
+    pub(crate) fn new(
+        material: &FluidMaterial,
+        radius: f32,
+        view_scale: f32,
+        exposure: f32,
+    ) -> Self {
+        let medium = &material.medium;
+        Self {
+            extinction: medium.extinction() / view_scale,
+            refractive_index: material.refractive_index,
+            scattering: medium.scattered() / view_scale,
+            perceptual_roughness: material.perceptual_roughness,
+            emission: medium.emission.to_vec3() * exposure / view_scale,
+            radius: radius * view_scale,
+            behind: Vec4::ZERO,
+            softness: match material.thickness {
+                Thickness::Layers => 0.0,
+                Thickness::Accumulated { softness } => softness,
+            },
+        }
+    }
+}
