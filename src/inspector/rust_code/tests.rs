@@ -182,6 +182,7 @@ FluidParticles {
 FluidParticles {
     positions: vec![vec3(1.0, 1.0, 1.0), vec3(0.0, 0.0, 0.0)],
     radius: 0.05,
+    ..default()
 }";
     assert_eq!(rust_code(&two, &registry()), code);
 }
