@@ -67,9 +67,8 @@ fn setup(mut scenery: Scenery) {
     let height = TANK.y * 0.9;
     let at = Transform::from_xyz(foot.x, 0.5 * height, foot.y);
     let orange = Color::srgb(0.9, 0.45, 0.1);
-    let pillar = SalvaBoundary::new(SalvaShape::Cylinder { radius, height });
-    let mut solid = opaque(&mut scenery, Cylinder::new(radius, height), at, orange);
-    solid.insert(pillar);
+    let pillar = Cylinder::new(radius, height);
+    opaque(&mut scenery, pillar, at, orange).insert(SalvaBoundary::new(pillar));
     let ball = Transform::from_xyz(-0.35, 0.2, 0.5 * TANK.z + 0.45);
     let red = Color::srgb(0.75, 0.1, 0.2);
     opaque(&mut scenery, Sphere::new(0.2), ball, red);
@@ -93,23 +92,23 @@ fn setup(mut scenery: Scenery) {
 }
 
 fn float(scenery: &mut Scenery) {
-    let crate_size = Vec3::splat(0.26);
+    let shape = Cuboid::from_length(0.26);
     let at = Transform::from_xyz(0.95, 0.13, 0.22).with_rotation(Quat::from_rotation_y(0.4));
     let wood = Color::srgb(0.55, 0.34, 0.16);
-    let body = SalvaBody::new(SalvaShape::Cuboid { size: crate_size }, 350.0);
-    opaque(scenery, Cuboid::from_size(crate_size), at, wood).insert((body, Floating(at)));
+    let body = SalvaBody::new(shape, 350.0);
+    opaque(scenery, shape, at, wood).insert((body, Floating(at)));
 
-    let plank = vec3(0.5, 0.06, 0.16);
+    let plank = Cuboid::new(0.5, 0.06, 0.16);
     let at = Transform::from_xyz(0.1, 0.03, 0.25).with_rotation(Quat::from_rotation_y(-0.5));
     let pine = Color::srgb(0.8, 0.62, 0.36);
-    let body = SalvaBody::new(SalvaShape::Cuboid { size: plank }, 450.0);
-    opaque(scenery, Cuboid::from_size(plank), at, pine).insert((body, Floating(at)));
+    let body = SalvaBody::new(plank, 450.0);
+    opaque(scenery, plank, at, pine).insert((body, Floating(at)));
 
-    let radius = 0.11;
-    let at = Transform::from_xyz(0.9, radius, -0.25);
-    let body = SalvaBody::new(SalvaShape::Sphere { radius }, 250.0);
+    let ball = Sphere::new(0.11);
+    let at = Transform::from_xyz(0.9, ball.radius, -0.25);
+    let body = SalvaBody::new(ball, 250.0);
     let yellow = Color::srgb(0.95, 0.75, 0.1);
-    opaque(scenery, Sphere::new(radius), at, yellow).insert((body, Floating(at)));
+    opaque(scenery, ball, at, yellow).insert((body, Floating(at)));
 }
 
 fn opaque<'a>(

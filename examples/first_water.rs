@@ -33,7 +33,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>, mut images: ResMut<As
         Transform::from_xyz(0.28, 0.3, 0.0),
     );
     commands.spawn((
-        ParticleCollider::from(ball),
+        ParticleCollider::new(ball),
         Mesh3d(assets.add(ball.into())),
         red,
     ));

@@ -28,8 +28,8 @@ use bevy::{
 use bevy_fluid::{
     prelude::*,
     recording::{
-        FluidRecording, FramePattern, Interpolation, LoadedFrames, ParticleAttributes,
-        RecordingPlayer, RecordingPlugin, RecordingSettings, RecordingWriter, WrittenFrames,
+        FluidRecording, FramePattern, Interpolation, LoadedFrames, RecordingPlayer,
+        RecordingPlugin, RecordingSettings, RecordingWriter, WrittenFrames,
     },
 };
 use clap::Parser;
@@ -198,18 +198,17 @@ fn record_dam(folder: &Path) -> anyhow::Result<String> {
         ))
         .add_systems(PostUpdate, simulate.in_set(FluidSystems::Simulate));
     let positions = app.world().resource::<Simulation>().positions();
-    let attributes = ParticleAttributes {
-        ids: (0..positions.len() as u32).collect(),
-        velocities: vec![Vec3::ZERO; positions.len()],
-    };
     let writer = RecordingWriter {
         rate: RATE,
         // Nothing waits for these frames, but none may be lost.
         queue: usize::MAX,
         ..RecordingWriter::new(frames.clone())
     };
-    let fluid = FluidParticles::new(positions, RADIUS);
-    let fluid = app.world_mut().spawn((fluid, attributes, writer)).id();
+    let fluid = FluidParticles {
+        ids: (0..positions.len() as u32).collect(),
+        ..FluidParticles::new(positions, RADIUS)
+    };
+    let fluid = app.world_mut().spawn((fluid, writer)).id();
     for _ in 0..(SECONDS / STEP) as u32 {
         app.update();
     }
@@ -223,15 +222,12 @@ fn record_dam(folder: &Path) -> anyhow::Result<String> {
     Ok(frames)
 }
 
-fn simulate(
-    mut water: ResMut<Simulation>,
-    mut fluids: Query<(&mut FluidParticles, &mut ParticleAttributes)>,
-) {
+fn simulate(mut water: ResMut<Simulation>, mut fluids: Query<&mut FluidParticles>) {
     water.step(STEP);
-    for (mut fluid, mut attributes) in &mut fluids {
+    for mut fluid in &mut fluids {
         let moved = water.positions();
         let ways = moved.iter().zip(&fluid.positions);
-        attributes.velocities = ways.map(|(to, from)| (to - from) / STEP).collect();
+        fluid.velocities = ways.map(|(to, from)| (to - from) / STEP).collect();
         fluid.positions = moved;
     }
 }

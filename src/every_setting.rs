@@ -7,7 +7,7 @@ use std::time::Duration;
 use bevy::{prelude::*, reflect::PartialReflect};
 
 use crate::{
-    emitter::{ColliderShape, EmitterBounds},
+    emitter::EmitterBounds,
     prelude::*,
     rain::{Exposure, RainShelter, RainStreakSettings},
     settings::{
@@ -15,7 +15,25 @@ use crate::{
         for_each_number,
     },
     shape::RADIUS,
+    solid::SolidShape,
 };
+
+/// A solid of every shape.
+const SOLIDS: [SolidShape; 5] = [
+    SolidShape::Ground,
+    SolidShape::Sphere { radius: 1.0 },
+    SolidShape::Cuboid {
+        half_size: Vec3::ONE,
+    },
+    SolidShape::Capsule {
+        radius: 1.0,
+        half_length: 2.0,
+    },
+    SolidShape::Cylinder {
+        radius: 1.0,
+        half_height: 2.0,
+    },
+];
 
 /// A number as every type can take it.
 fn number(value: &dyn PartialReflect) -> Option<f64> {
@@ -152,17 +170,7 @@ fn emitters_and_colliders() {
             ..default()
         });
     }
-    for shape in [
-        ColliderShape::Ground,
-        ColliderShape::Sphere { radius: 1.0 },
-        ColliderShape::Cuboid {
-            half_size: Vec3::ONE,
-        },
-        ColliderShape::Capsule {
-            radius: 1.0,
-            half_length: 2.0,
-        },
-    ] {
+    for shape in SOLIDS {
         check(ParticleCollider::from(shape));
     }
 }
@@ -200,19 +208,9 @@ fn simulation() {
 
     check(SalvaFluid::default());
     check(SalvaSettings::default());
-    let (size, radius, height) = (Vec3::ONE, 0.1, 0.3);
-    for shape in [
-        SalvaShape::Mesh,
-        SalvaShape::Cuboid { size },
-        SalvaShape::Tank { size },
-        SalvaShape::Sphere { radius },
-        SalvaShape::Capsule {
-            radius,
-            length: height,
-        },
-        SalvaShape::Cylinder { radius, height },
-        SalvaShape::Plane,
-    ] {
+    let half_size = Vec3::ONE;
+    let others = [SalvaShape::Mesh, SalvaShape::Tank { half_size }];
+    for shape in others.into_iter().chain(SOLIDS.map(SalvaShape::Solid)) {
         check(SalvaBoundary::new(shape));
         check(SalvaBody::new(shape, 500.0));
     }

@@ -122,7 +122,7 @@ use crate::{
 pub use crate::{
     plugins::{FluidPlugin, FluidPlugins},
     schedule::FluidSystems,
-    source::{emitter, particles},
+    source::{emitter, particles, solid},
 };
 
 /// What most programs name.
@@ -138,7 +138,7 @@ pub mod prelude {
         FluidPlugin, FluidPlugins, FluidSystems,
         emitter::{ParticleCollider, ParticleEmitter},
         material::{FluidMaterial, Medium, Thickness},
-        particles::FluidParticles,
+        particles::{FluidParticles, ParticleSpace},
         rain::{Rain, RainPlugin},
         settings::{ScreenSpaceFluid, Settings},
         shape::SurfaceKernel,

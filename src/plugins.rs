@@ -67,8 +67,8 @@ impl Default for FluidPlugin {
 
 impl Plugin for FluidPlugin {
     fn build(&self, app: &mut App) {
+        schedule::order(app);
         app.add_plugins((
-            schedule::plugin,
             particles::plugin,
             emitter::plugin,
             check::<FluidMaterial>,

@@ -1,33 +1,56 @@
 //! The system sets a game can order its own systems against.
 
-use bevy::prelude::*;
+use bevy::{app::AnimationSystems, prelude::*};
 
 /// The stages of particles within a frame, in this order, in [`PostUpdate`].
 ///
 /// Changes made to [`FluidParticles`](crate::particles::FluidParticles) anywhere before
 /// [`FluidSystems::Shape`] are on screen in the same frame.
+///
+/// Particles are emitted and moved after animation (`AnimationSystems`) and before transforms are
+/// propagated (`TransformSystems::Propagate`): so a floating body, and what hangs on it, is seen
+/// where the simulation has moved it in this frame. The places of nozzles, colliders and boundaries
+/// are computed from their `Transform`s and those of their parents, and so are those of this frame
+/// too; what moves them in [`PostUpdate`] belongs before [`FluidSystems::Emit`], and what changes
+/// settings before [`FluidSystems::Check`]. Only a nozzle on a
+/// floating body follows it a frame behind.
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
 pub enum FluidSystems {
     /// Settings out of range are logged and clamped.
     Check,
-    /// Particles are created and destroyed.
+    /// Emitters emit, except into a simulation.
     Emit,
-    /// Particles move.
+    /// Particles and floating bodies move: recordings first, then the live simulation, which takes
+    /// in what its emitters emit, then emitters' own particles.
     Simulate,
     /// Changed particles are classified and turned into splats.
     Shape,
 }
 
-/// Every plugin that uses the sets may add this.
-pub(crate) fn plugin(app: &mut App) {
+/// Who moves particles in [`FluidSystems::Simulate`], in this order: emitters' particles collide
+/// with what the simulation has moved.
+#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
+pub(crate) enum Movers {
+    Recordings,
+    Simulation,
+    Emitters,
+}
+
+/// Orders the sets. Each plugin that needs them does so, as it may be the only one.
+pub(crate) fn order(app: &mut App) {
     app.configure_sets(
         PostUpdate,
         (
-            FluidSystems::Check,
-            FluidSystems::Emit,
-            FluidSystems::Simulate,
-            FluidSystems::Shape,
-        )
-            .chain(),
+            (
+                FluidSystems::Check.after(AnimationSystems),
+                FluidSystems::Emit,
+                FluidSystems::Simulate.before(TransformSystems::Propagate),
+                FluidSystems::Shape,
+            )
+                .chain(),
+            (Movers::Recordings, Movers::Simulation, Movers::Emitters)
+                .chain()
+                .in_set(FluidSystems::Simulate),
+        ),
     );
 }

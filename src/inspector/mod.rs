@@ -39,17 +39,22 @@ mod window;
 use std::any::TypeId;
 
 use bevy::{prelude::*, reflect::GetTypeRegistration};
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass, input::EguiWantsInput};
+use bevy_egui::{
+    EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass,
+    input::EguiWantsInput,
+};
 
 pub use presets::{Presets, ReflectPresets};
 pub use rust_code::{rust_code, spawn_code};
 
 use crate::{
+    FluidSystems,
     diagnostics::FluidDiagnosticsPlugin,
     emitter::{ParticleCollider, ParticleEmitter},
     material::FluidMaterial,
     particles::FluidParticles,
     rain::{Rain, RainShelter, RainStreakSettings},
+    schedule,
     settings::ScreenSpaceFluid,
     shape::SurfaceKernel,
 };
@@ -153,7 +158,13 @@ impl Plugin for FluidInspectorPlugin {
         app.insert_resource(inspector)
             .add_plugins((presets::plugin, presets::views::plugin))
             .add_systems(Update, toggle)
-            .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open));
+            .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open))
+            // What is set in the window takes effect in the same frame.
+            .configure_sets(
+                PostUpdate,
+                EguiPostUpdateSet::EndPass.before(FluidSystems::Check),
+            );
+        schedule::order(app);
         #[cfg(feature = "salva")]
         app.add_plugins(presets::salva::plugin);
     }

@@ -126,6 +126,6 @@ pub(super) mod salva {
 
     presets! {
         SalvaFluid: WATER, HONEY;
-        SalvaBoundary: MESH, PLANE;
+        SalvaBoundary: MESH, GROUND;
     }
 }

@@ -45,7 +45,7 @@ struct CheckPlugin<C>(PhantomData<fn() -> C>);
 
 impl<C: Settings + Component> Plugin for CheckPlugin<C> {
     fn build(&self, app: &mut App) {
-        schedule::plugin(app);
+        schedule::order(app);
         app.add_observer(check_inserted::<C>)
             .add_observer(forget_removed::<C>)
             .add_systems(PostUpdate, check_changed::<C>.in_set(FluidSystems::Check));

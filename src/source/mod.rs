@@ -6,3 +6,4 @@ pub mod particles;
 pub mod recording;
 #[cfg(feature = "salva")]
 pub mod salva;
+pub mod solid;

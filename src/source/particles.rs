@@ -9,7 +9,10 @@ use crate::{
     shape::{FluidSplats, RADIUS, ShapeTimes, ShapeWorkspace, SurfaceKernel},
 };
 
-/// A fluid: particles of one radius in the entity's space.
+/// A fluid: particles of one radius, as columns. What is known of particle i is item i of each.
+///
+/// A column other than the positions is empty where nothing is known; one of another length than
+/// the positions is ignored, which is logged once.
 ///
 /// A fluid is shaped again only when this component, or the [`SurfaceKernel`] on its entity,
 /// changes; an unchanged fluid costs nothing.
@@ -17,9 +20,16 @@ use crate::{
 #[reflect(Component, Default, Clone)]
 #[require(FluidMaterial, SurfaceKernel, ShapedFluid, Transform, Visibility)]
 pub struct FluidParticles {
-    /// Centres in the entity's space. Unit: m, default: none. Particles that are not finite are
-    /// dropped and counted in [`ShapedFluid::dropped`].
+    /// Centres. Unit: m, default: none. Particles that are not finite are dropped and counted in
+    /// [`ShapedFluid::dropped`].
     pub positions: Vec<Vec3>,
+    /// Velocities. Unit: m/s, default: none.
+    pub velocities: Vec<Vec3>,
+    /// Ids, each of one particle for as long as it lives, by which it is found again in another
+    /// frame. Default: none.
+    pub ids: Vec<u32>,
+    /// The space of the positions, the velocities and the radius. Default: [`ParticleSpace::Local`].
+    pub space: ParticleSpace,
     /// Radius of every particle, half the distance between neighbours at rest. Unit: m, range
     /// 1e-9..=1e9, default 0, valid only without particles. Particles of an invalid radius are not
     /// drawn; that is logged once.
@@ -30,8 +40,56 @@ pub struct FluidParticles {
 impl FluidParticles {
     /// A fluid of particles at `positions`, each of `radius`.
     pub fn new(positions: Vec<Vec3>, radius: f32) -> Self {
-        Self { positions, radius }
+        Self {
+            positions,
+            radius,
+            ..default()
+        }
     }
+
+    /// The transform from the particles' space to the world, for an entity at `entity`.
+    pub fn world_from_particles(&self, entity: &GlobalTransform) -> GlobalTransform {
+        match self.space {
+            ParticleSpace::Local => *entity,
+            ParticleSpace::World => GlobalTransform::IDENTITY,
+        }
+    }
+
+    /// The velocities, if there is one for each particle.
+    pub(crate) fn whole_velocities(&self) -> &[Vec3] {
+        self.whole(&self.velocities)
+    }
+
+    /// The ids, if there is one for each particle.
+    pub(crate) fn whole_ids(&self) -> &[u32] {
+        self.whole(&self.ids)
+    }
+
+    fn whole<'a, T>(&self, column: &'a [T]) -> &'a [T] {
+        let is_whole = column.len() == self.positions.len();
+        if is_whole { column } else { &[] }
+    }
+
+    /// The first column of a wrong length, by its name and its length.
+    fn misfit(&self) -> Option<(&'static str, usize)> {
+        [
+            ("velocities", self.velocities.len()),
+            ("ids", self.ids.len()),
+        ]
+        .into_iter()
+        .find(|&(_, len)| len != 0 && len != self.positions.len())
+    }
+}
+
+/// The space in which a fluid's particles are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum ParticleSpace {
+    /// The space of their entity: its transform moves, turns and scales them.
+    #[default]
+    Local,
+    /// The world: the transform of their entity leaves them where they are.
+    World,
 }
 
 /// The result of shaping a fluid. The splats themselves go to the render world.
@@ -42,6 +100,8 @@ pub struct ShapedFluid {
     generation: u64,
     /// Why the fluid is not drawn; logged when it changes.
     error: Option<String>,
+    /// The column that is ignored; logged when it becomes another.
+    misfit: Option<&'static str>,
 }
 
 impl ShapedFluid {
@@ -95,6 +155,12 @@ pub(crate) fn shape_fluids(
     mut workspace: Local<ShapeWorkspace>,
 ) {
     for (entity, particles, kernel, mut shaped) in &mut fluids {
+        let misfit = particles.misfit();
+        if let Some((column, len)) = misfit.filter(|&(column, _)| shaped.misfit != Some(column)) {
+            let count = particles.positions.len();
+            warn!("fluid {entity}: {count} particles and {len} {column}, which are ignored");
+        }
+        shaped.misfit = misfit.map(|(column, _)| column);
         let splats = &mut shaped.splats;
         let result = workspace.shape(&particles.positions, particles.radius, kernel, splats);
         let error = result.err().map(|error| error.to_string());

@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "the unit tests use the rest")]
 mod oracle;
 
+mod columns;
 mod emitter;
 mod random_clouds;
 mod readme;

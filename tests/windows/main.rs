@@ -1,3 +1,4 @@
 //! What is seen and done in a window, driven without one.
 
 mod inspector;
+mod schedules;

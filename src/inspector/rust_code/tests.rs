@@ -2,13 +2,14 @@ use core::any::TypeId;
 
 use super::*;
 use crate::{
-    emitter::{ColliderShape, EmitterBounds},
+    emitter::EmitterBounds,
     prelude::*,
     rain::{Exposure, RainStreakSettings},
     settings::{
         Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, Search, Smoothing,
         Window,
     },
+    solid::SolidShape,
 };
 
 fn registry() -> TypeRegistry {
@@ -181,6 +182,7 @@ FluidParticles {
 FluidParticles {
     positions: vec![vec3(1.0, 1.0, 1.0), vec3(0.0, 0.0, 0.0)],
     radius: 0.05,
+    ..default()
 }";
     assert_eq!(rust_code(&two, &registry()), code);
 }
@@ -307,7 +309,7 @@ fn the_code_of_a_scene_spawns_it() {
             },
         ));
         commands.spawn((ParticleCollider {
-            shape: ColliderShape::Sphere { radius: 0.5 },
+            shape: SolidShape::Sphere { radius: 0.5 },
             ..default()
         },));
     }

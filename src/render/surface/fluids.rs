@@ -70,11 +70,11 @@ pub(super) fn extract_fluids(
         let fluid = known
             .as_deref_mut()
             .unwrap_or_else(|| new.insert(ExtractedFluid::default()));
-        fluid.transform = *transform;
+        fluid.transform = particles.world_from_particles(transform);
         fluid.material = material.map(|it| **it).unwrap_or_default();
         fluid.visible = visibility.get();
         fluid.local_radius = particles.radius;
-        fluid.radius = particles.radius * mean_scale(&transform.affine().matrix3);
+        fluid.radius = particles.radius * mean_scale(&fluid.transform.affine().matrix3);
         fluid
             .layers
             .clone_from(layers.unwrap_or(&RenderLayers::layer(0)));

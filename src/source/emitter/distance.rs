@@ -6,34 +6,18 @@
 
 use bevy::math::Vec3A;
 
-/// A convex solid in its own space. Lengths in m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Solid {
-    /// All that is below y = 0.
-    HalfSpace,
-    Sphere {
-        radius: f32,
-    },
-    Cuboid {
-        half_size: Vec3A,
-    },
-    /// About the y axis.
-    Capsule {
-        radius: f32,
-        half_length: f32,
-    },
-}
+use crate::source::solid::SolidShape;
 
 /// Ways flatter than this along a surface do not lead into it.
 const GRAZE: f32 = 1e-4;
 /// Newton's steps double the correct digits, except at a graze, where they halve the distance.
 const STEPS: usize = 24;
 
-impl Solid {
+impl SolidShape {
     /// The signed distance of a point from the surface, negative inside, and its gradient.
     pub(super) fn distance(&self, point: Vec3A) -> (f32, Vec3A) {
         match *self {
-            Self::HalfSpace => (point.y, Vec3A::Y),
+            Self::Ground => (point.y, Vec3A::Y),
             Self::Sphere { radius } => ball(point, radius),
             Self::Capsule {
                 radius,
@@ -42,8 +26,24 @@ impl Solid {
                 let along = point.y.clamp(-half_length, half_length);
                 ball(point - along * Vec3A::Y, radius)
             }
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => {
+                let along = Vec3A::Y * 1_f32.copysign(point.y);
+                let axis_to_point = Vec3A::new(point.x, 0.0, point.z);
+                let out = axis_to_point.normalize_or(Vec3A::X);
+                let across = axis_to_point.length() - radius;
+                let above = point.y.abs() - half_height;
+                let distance = across.hypot(above);
+                match (across > 0.0, above > 0.0) {
+                    (true, true) => (distance, (across * out + above * along) / distance),
+                    _ if across > above => (across, out),
+                    _ => (above, along),
+                }
+            }
             Self::Cuboid { half_size } => {
-                let beyond = point.abs() - half_size;
+                let beyond = point.abs() - Vec3A::from(half_size);
                 let side = Vec3A::ONE.copysign(point);
                 let depth = beyond.max_element();
                 if depth > 0.0 {

@@ -12,6 +12,8 @@ use crate::random::Random;
 pub(crate) struct Birth {
     /// Where it is born. Unit: m.
     pub(crate) position: Vec3,
+    /// Its number among all of the emitter's particles, from 0 again after the last.
+    pub(crate) id: u32,
     /// Its velocity at birth. Unit: m/s.
     pub(crate) velocity: Vec3,
     /// How old it is at the end of the step, and so for how long it has yet to be moved within it.
@@ -71,9 +73,11 @@ impl Emission {
                 seconds
             };
             let pose = from.towards(&to, (time / seconds) as f32);
-            let (position, velocity) = nozzle.particle(&pose, self.born.wrapping_add(number));
+            let number = self.born.wrapping_add(number);
+            let (position, velocity) = nozzle.particle(&pose, number);
             birth(Birth {
                 position,
+                id: number as u32,
                 velocity,
                 age: (seconds - time) as f32,
             });

@@ -1,8 +1,7 @@
 //! Emitters: particles that come out of a nozzle, fly, bounce and vanish.
 //!
-//! [`FluidSystems::Emit`] adds the particles born in a step to [`EmittedParticles`];
-//! [`FluidSystems::Simulate`] moves all particles and writes them to the entity's
-//! [`FluidParticles`].
+//! [`FluidSystems::Emit`] adds the particles born in a step to the entity's [`FluidParticles`];
+//! [`FluidSystems::Simulate`] moves all particles there.
 
 mod colliders;
 mod contact;
@@ -16,14 +15,11 @@ use core::f32::consts::PI;
 
 use bevy::prelude::*;
 
-pub use self::{
-    colliders::{ColliderShape, ParticleCollider},
-    particles::EmittedParticles,
-};
+pub use self::{colliders::ParticleCollider, particles::EmittedParticles};
 
 pub(crate) use self::emission::Emission;
 use crate::{
-    schedule::FluidSystems,
+    schedule::{FluidSystems, Movers},
     settings::{Checked, SettingError, SettingRange, Settings, check},
     source::particles::FluidParticles,
 };
@@ -33,8 +29,12 @@ use crate::{
 /// New particles are born at the entity, spread along its path since the last frame; particles
 /// already emitted stay in the world when it moves on. Particles fly freely, bounce off every
 /// [`ParticleCollider`], and vanish by age, by [`bounds`](Self::bounds), or, the oldest first, when
-/// there are more than the [`capacity`](Self::capacity). The emitter overwrites the positions and
-/// the radius of the [`FluidParticles`] on its entity.
+/// there are more than the [`capacity`](Self::capacity).
+///
+/// The particles are the [`FluidParticles`] on its entity, in the
+/// [world](crate::particles::ParticleSpace::World), the oldest first, with velocities and ids. Other code may
+/// move them there; what is beyond the end of the shortest column, ages in [`EmittedParticles`]
+/// included, is dropped.
 ///
 /// Emission and motion are deterministic: equal steps give equal particles, bit for bit, on any
 /// number of threads. A step is never longer than 0.25 s. A stopped emitter without particles costs
@@ -82,8 +82,8 @@ pub struct ParticleEmitter {
     /// 0..=1000, default 0.1. Higher: the jet breaks up sooner.
     #[reflect(@SettingRange::new(0.0, 1e3).unit("m/s").logarithmic())]
     pub jitter: f32,
-    /// Radius of every particle, in the entity's space: [`FluidParticles::radius`]. Unit: m, range
-    /// 1e-6..=1e6, default 0.02.
+    /// Radius of every particle, in the entity's space; with the mean of its scales it becomes
+    /// [`FluidParticles::radius`]. Unit: m, range 1e-6..=1e6, default 0.02.
     #[reflect(@SettingRange::new(1e-6, 1e6).unit("m").logarithmic())]
     pub particle_radius: f32,
     /// Age at which particles vanish. Unit: s, from 0, default 3. Infinite: never.
@@ -308,9 +308,7 @@ pub(crate) fn plugin(app: &mut App) {
             PostUpdate,
             (
                 particles::emit.in_set(FluidSystems::Emit),
-                particles::simulate.in_set(FluidSystems::Simulate),
-            )
-                .chain()
-                .after(TransformSystems::Propagate),
+                particles::simulate.in_set(Movers::Emitters),
+            ),
         );
 }

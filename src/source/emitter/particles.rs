@@ -3,6 +3,7 @@
 use bevy::{
     math::{Affine3A, Vec3A},
     prelude::*,
+    transform::helper::TransformHelper,
 };
 use rayon::prelude::*;
 
@@ -14,28 +15,26 @@ use super::{
     motion::Step,
     step,
 };
-use crate::{settings::Checked, source::particles::FluidParticles};
+use crate::{
+    settings::Checked,
+    source::particles::{FluidParticles, ParticleSpace},
+};
 
 /// Particles that one task moves.
 const CHUNK: usize = 4096;
 /// Beyond this there are no particles. Unit: m.
-const EVERYWHERE: EmitterBounds = EmitterBounds {
-    min: Vec3::splat(-1e30),
-    max: Vec3::splat(1e30),
-};
+const FARTHEST: f32 = 1e30;
 /// The age of particles that are to vanish.
 const DEAD: f32 = f32::INFINITY;
+/// Two radii that are the same but for the rounding of a scale.
+const SAME_RADIUS: f32 = 1e-5;
 
-/// The particles of an emitter, oldest first, in world space. With [`ExternalMotion`] there are
-/// none.
+/// What an emitter knows of its particles beside their [`FluidParticles`], oldest first. With
+/// [`ExternalMotion`] there are none.
 #[derive(Component, Clone, Debug, Default)]
 pub struct EmittedParticles {
-    positions: Vec<Vec3>,
-    velocities: Vec<Vec3>,
     /// Negative at the beginning of a step for particles born within it.
     ages: Vec<f32>,
-    /// The transform that [`FluidParticles`] has been written with.
-    written: Option<Affine3A>,
     /// Whether the transform has no inverse, so that particles have no place in the entity's space.
     is_nowhere: bool,
 }
@@ -43,33 +42,17 @@ pub struct EmittedParticles {
 impl EmittedParticles {
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.positions.len()
+        self.ages.len()
     }
 
     /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
-    }
-
-    /// Positions. Unit: m.
-    pub fn positions(&self) -> &[Vec3] {
-        &self.positions
-    }
-
-    /// Velocities. Unit: m/s.
-    pub fn velocities(&self) -> &[Vec3] {
-        &self.velocities
+        self.ages.is_empty()
     }
 
     /// Ages. Unit: s.
     pub fn ages(&self) -> &[f32] {
         &self.ages
-    }
-
-    fn clear(&mut self) {
-        self.positions.clear();
-        self.velocities.clear();
-        self.ages.clear();
     }
 
     /// Lets the oldest vanish in this step, if there are more than `capacity`.
@@ -78,88 +61,86 @@ impl EmittedParticles {
         self.ages[..surplus].fill(DEAD);
     }
 
-    /// Moves all by a step, writes them in the emitter's space to `local`, and lets those vanish
-    /// that are too old or out of bounds.
-    fn advance(
-        &mut self,
-        step: &Step,
-        emitter: &ParticleEmitter,
-        local_from_world: &Affine3A,
-        local: &mut Vec<Vec3>,
-    ) {
-        local.resize(self.len(), Vec3::ZERO);
-        let chunk = Chunk {
-            step,
-            lifetime: emitter.lifetime,
-            bounds: emitter.bounds.unwrap_or(EVERYWHERE),
-            local_from_world,
+    /// Drops all particles that not every column has: other code may have written the fluid's.
+    fn truncate_to_columns(&mut self, fluid: &mut Mut<FluidParticles>) {
+        let lengths = [
+            self.ages.len(),
+            fluid.positions.len(),
+            fluid.velocities.len(),
+            fluid.ids.len(),
+        ];
+        let shortest = lengths.into_iter().fold(usize::MAX, usize::min);
+        if fluid.space == ParticleSpace::World && lengths == [shortest; 4] {
+            return;
+        }
+        let kept = match fluid.space {
+            ParticleSpace::World => shortest,
+            ParticleSpace::Local => 0,
         };
-        let (positions, velocities, ages) =
-            (&mut self.positions, &mut self.velocities, &mut self.ages);
+        self.truncate(fluid, kept);
+        fluid.space = ParticleSpace::World;
+    }
+
+    fn truncate(&mut self, fluid: &mut FluidParticles, count: usize) {
+        self.ages.truncate(count);
+        fluid.positions.truncate(count);
+        fluid.velocities.truncate(count);
+        fluid.ids.truncate(count);
+    }
+
+    /// Moves all by a step, and lets those vanish that are too old or out of bounds.
+    fn advance(&mut self, fluid: &mut FluidParticles, chunk: &Chunk) {
+        let columns = (&mut fluid.positions, &mut fluid.velocities, &mut self.ages);
+        let (positions, velocities, ages) = columns;
         let any_dead = if positions.len() <= CHUNK {
-            chunk.advance(positions, velocities, ages, local)
+            chunk.advance(positions, velocities, ages)
         } else {
             positions
                 .par_chunks_mut(CHUNK)
                 .zip(velocities.par_chunks_mut(CHUNK))
                 .zip(ages.par_chunks_mut(CHUNK))
-                .zip(local.par_chunks_mut(CHUNK))
-                .map(|(((positions, velocities), ages), local)| {
-                    chunk.advance(positions, velocities, ages, local)
-                })
+                .map(|((positions, velocities), ages)| chunk.advance(positions, velocities, ages))
                 .reduce(|| false, |a, b| a | b)
         };
         if any_dead {
-            self.bury(local);
+            self.bury(fluid);
         }
     }
 
     /// Closes the gaps of the dead; the others stay in order.
-    fn bury(&mut self, local: &mut Vec<Vec3>) {
+    fn bury(&mut self, fluid: &mut FluidParticles) {
         let Some(first) = self.ages.iter().position(|&age| age == DEAD) else {
             return;
         };
         let mut kept = first;
         for i in first + 1..self.ages.len() {
             if self.ages[i] < DEAD {
-                self.positions[kept] = self.positions[i];
-                self.velocities[kept] = self.velocities[i];
                 self.ages[kept] = self.ages[i];
-                local[kept] = local[i];
+                fluid.positions[kept] = fluid.positions[i];
+                fluid.velocities[kept] = fluid.velocities[i];
+                fluid.ids[kept] = fluid.ids[i];
                 kept += 1;
             }
         }
-        self.positions.truncate(kept);
-        self.velocities.truncate(kept);
-        self.ages.truncate(kept);
-        local.truncate(kept);
+        self.truncate(fluid, kept);
     }
 }
 
 /// The work on a part of the particles, by one thread.
 struct Chunk<'a> {
-    step: &'a Step<'a>,
+    step: Step<'a>,
     lifetime: f32,
-    bounds: EmitterBounds,
-    local_from_world: &'a Affine3A,
+    /// A box, and the transform into its space.
+    bounds: Option<(Affine3A, EmitterBounds)>,
 }
 
 impl Chunk<'_> {
     /// Returns whether any are to vanish.
-    fn advance(
-        &self,
-        positions: &mut [Vec3],
-        velocities: &mut [Vec3],
-        ages: &mut [f32],
-        local: &mut [Vec3],
-    ) -> bool {
-        let step = self.step;
+    fn advance(&self, positions: &mut [Vec3], velocities: &mut [Vec3], ages: &mut [f32]) -> bool {
+        let step = &self.step;
         let whole = step.forces.over(step.seconds);
-        let [min, max] = [self.bounds.min, self.bounds.max].map(Vec3A::from);
         let mut any_dead = false;
-        for (((position, velocity), age), local) in
-            positions.iter_mut().zip(velocities).zip(ages).zip(local)
-        {
+        for ((position, velocity), age) in positions.iter_mut().zip(velocities).zip(ages) {
             let is_new = *age < 0.0;
             *age += step.seconds;
             if *age >= self.lifetime {
@@ -174,16 +155,25 @@ impl Chunk<'_> {
             } else {
                 step.advance(&mut place, &mut speed, &whole, step.seconds);
             }
-            let here = self.local_from_world.transform_point3a(place);
-            (*position, *velocity, *local) = (place.into(), speed.into(), here.into());
-            // NaN is never within.
-            let is_within = (here.cmpge(min) & here.cmple(max)).all();
-            if !is_within {
+            (*position, *velocity) = (place.into(), speed.into());
+            if !self.is_within(place) {
                 *age = DEAD;
                 any_dead = true;
             }
         }
         any_dead
+    }
+
+    /// NaN is never within.
+    #[inline]
+    fn is_within(&self, place: Vec3A) -> bool {
+        match &self.bounds {
+            None => place.abs().cmple(Vec3A::splat(FARTHEST)).all(),
+            Some((to_space, bounds)) => {
+                let here = to_space.transform_point3a(place);
+                (here.cmpge(bounds.min.into()) & here.cmple(bounds.max.into())).all()
+            }
+        }
     }
 }
 
@@ -202,23 +192,30 @@ pub(super) fn stop(
 pub(super) fn emit(
     mut emitters: Query<
         (
+            Entity,
             Mut<ParticleEmitter>,
             &Checked<ParticleEmitter>,
-            &GlobalTransform,
             &mut Emission,
             &mut EmittedParticles,
+            &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
+    transforms: TransformHelper,
     time: Res<Time>,
 ) {
     let seconds = step(&time);
-    for (mut emitter, checked, transform, mut emission, mut particles) in &mut emitters {
+    for (entity, mut emitter, checked, mut emission, mut particles, mut fluid) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
+            continue;
+        };
+        particles.truncate_to_columns(&mut fluid);
         let settings = ParticleEmitter::take(&mut emitter, checked, seconds);
-        emission.emit(&settings, transform, seconds, |birth: Birth| {
-            particles.positions.push(birth.position);
-            particles.velocities.push(birth.velocity);
+        emission.emit(&settings, &transform, seconds, |birth: Birth| {
             particles.ages.push(birth.age - seconds as f32);
+            fluid.positions.push(birth.position);
+            fluid.velocities.push(birth.velocity);
+            fluid.ids.push(birth.id);
         });
         if seconds > 0.0 {
             particles.keep_newest(settings.capacity as usize);
@@ -232,57 +229,46 @@ pub(super) fn simulate(
         (
             Entity,
             &Checked<ParticleEmitter>,
-            &GlobalTransform,
             &mut EmittedParticles,
             &mut FluidParticles,
         ),
         Without<ExternalMotion>,
     >,
-    mut colliders: Query<(
-        &Checked<ParticleCollider>,
-        &GlobalTransform,
-        &mut ColliderPath,
-    )>,
+    mut colliders: Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
+    transforms: TransformHelper,
     mut list: Local<Colliders>,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
-    list.gather(&mut colliders);
-    for (entity, emitter, transform, mut particles, mut fluid) in &mut emitters {
-        if fluid.radius != emitter.particle_radius {
-            fluid.radius = emitter.particle_radius;
-        }
-        let world_from_local = transform.affine();
-        let is_moved = particles.written != Some(world_from_local);
-        if particles.is_empty() && fluid.positions.is_empty() || seconds == 0.0 && !is_moved {
+    list.gather(&mut colliders, &transforms);
+    for (entity, emitter, mut particles, mut fluid) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
             continue;
+        };
+        let world_from_local = transform.affine();
+        let scale = world_from_local.matrix3.determinant().abs().cbrt();
+        let radius = emitter.particle_radius * scale;
+        // A turning emitter must not change a fluid that stands still.
+        let is_same = (fluid.radius - radius).abs() <= SAME_RADIUS * radius;
+        if !is_same && radius.is_finite() && radius > 0.0 {
+            fluid.radius = radius;
         }
         let local_from_world = world_from_local.inverse();
-        particles.written = Some(world_from_local);
-        let local = &mut fluid.positions;
         let was_nowhere = particles.is_nowhere;
         particles.is_nowhere = !local_from_world.is_finite();
+        if particles.is_nowhere && !was_nowhere {
+            warn!("emitter {entity}: its `GlobalTransform` has no inverse; its particles vanish");
+        }
+        if particles.is_empty() {
+            continue;
+        }
         if particles.is_nowhere {
-            if !was_nowhere {
-                warn!(
-                    "emitter {entity}: its `GlobalTransform` has no inverse; its particles vanish"
-                );
-            }
-            particles.clear();
-            local.clear();
+            particles.truncate(&mut fluid, 0);
             continue;
         }
         if seconds == 0.0 {
-            local.clear();
-            local.extend(
-                particles
-                    .positions
-                    .iter()
-                    .map(|&place| local_from_world.transform_point3(place)),
-            );
             continue;
         }
-        let scale = world_from_local.matrix3.determinant().abs().cbrt();
         let step = Step {
             forces: Forces {
                 gravity: emitter.gravity.into(),
@@ -290,8 +276,13 @@ pub(super) fn simulate(
             },
             seconds,
             colliders: &list,
-            radius: emitter.particle_radius * scale,
+            radius: fluid.radius,
         };
-        particles.advance(&step, emitter, &local_from_world, local);
+        let chunk = Chunk {
+            step,
+            lifetime: emitter.lifetime,
+            bounds: emitter.bounds.map(|bounds| (local_from_world, bounds)),
+        };
+        particles.advance(&mut fluid, &chunk);
     }
 }

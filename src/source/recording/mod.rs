@@ -58,9 +58,12 @@ pub use self::{
     loader::{FluidRecordingLoader, ParticleFrameLoader},
     pattern::FramePattern,
     player::{Interpolation, RecordingPlayer},
-    writer::{ParticleAttributes, RecordingWriter, WrittenFrames},
+    writer::{RecordingWriter, WrittenFrames},
 };
-use crate::{schedule::FluidSystems, settings::check};
+use crate::{
+    schedule::{FluidSystems, Movers},
+    settings::check,
+};
 
 /// Plays and writes recordings. Part of [`FluidPlugins`](crate::FluidPlugins); it also works without
 /// the others, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
@@ -82,11 +85,10 @@ impl Plugin for RecordingPlugin {
             .register_type::<RecordingPlayer>()
             .register_type::<RecordingSettings>()
             .register_type::<RecordingWriter>()
-            .register_type::<ParticleAttributes>()
             .add_systems(
                 PostUpdate,
                 (
-                    playback::play.in_set(FluidSystems::Simulate),
+                    playback::play.in_set(Movers::Recordings),
                     writer::record
                         .after(FluidSystems::Simulate)
                         .before(FluidSystems::Shape),

@@ -51,6 +51,7 @@ pub(super) fn play(
                 frames,
                 recording,
                 checked.interpolation,
+                checked.rate,
                 &mut particles,
             );
         }
@@ -149,6 +150,7 @@ fn show(
     frames: &mut LoadedFrames,
     recording: &FluidRecording,
     interpolation: Interpolation,
+    rate: f32,
     particles: &mut Mut<FluidParticles>,
 ) {
     if frames.shown == Some(moment) {
@@ -158,10 +160,13 @@ fn show(
     else {
         return;
     };
-    let positions = &mut particles.positions;
+    let particles = &mut **particles;
     if moment.before == moment.after {
-        positions.clear();
-        positions.extend_from_slice(&before.positions);
+        particles.positions.clone_from(&before.positions);
+        particles.ids.clone_from(&before.ids);
+        particles.velocities.clear();
+        let velocities = before.velocities.iter().map(|&velocity| velocity * rate);
+        particles.velocities.extend(velocities);
     } else {
         let number = |frame: usize| f64::from(recording.frames[frame].number);
         let frames = number(moment.after) - number(moment.before);
@@ -171,8 +176,9 @@ fn show(
             share: moment.share,
             seconds: (frames / recording.rate) as f32,
             by_velocity: interpolation == Interpolation::Velocity,
+            rate,
         }
-        .write_positions(positions);
+        .write(particles);
     }
     let radius = before.radius.or(after.radius);
     frames.shown_radius = radius;

@@ -9,7 +9,9 @@ use crate::{
     source::particles::FluidParticles,
 };
 
-/// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity.
+/// Plays a [`FluidRecording`] into the [`FluidParticles`] on its entity: positions, and velocities
+/// and ids if the files have them. Velocities are those of playback: at half the rate, half as
+/// fast.
 ///
 /// Frames are loaded in the background, ahead of playback. A late frame does not block the program:
 /// the current one stays, and the clock goes on. The clock starts with the first frame shown.

@@ -1,6 +1,6 @@
 //! Emitters that feed a simulated fluid.
 
-use bevy::prelude::*;
+use bevy::{prelude::*, transform::helper::TransformHelper};
 
 use super::{
     SalvaFluid, SalvaSettings,
@@ -21,11 +21,11 @@ pub(crate) fn emit(
             Entity,
             Mut<ParticleEmitter>,
             &Checked<ParticleEmitter>,
-            &GlobalTransform,
             &mut Emission,
         ),
         With<SalvaFluid>,
     >,
+    transforms: TransformHelper,
     time: Res<Time>,
 ) {
     // Where the liquid moves in slow motion, so does what comes out.
@@ -35,10 +35,13 @@ pub(crate) fn emit(
         simulation.pace.rate
     };
     let seconds = step(&time) * pace;
-    for (entity, mut emitter, checked, transform, mut emission) in &mut emitters {
+    for (entity, mut emitter, checked, mut emission) in &mut emitters {
+        let Ok(transform) = transforms.compute_global_transform(entity) else {
+            continue;
+        };
         let own = ParticleEmitter::take(&mut emitter, checked, seconds);
         let mut newborn = Newborn::default();
-        emission.emit(&own, transform, seconds, |birth| {
+        emission.emit(&own, &transform, seconds, |birth| {
             let fallen = 0.5 * birth.age * settings.gravity;
             newborn
                 .positions

@@ -31,7 +31,7 @@ pub enum SalvaError {
     #[error("`SalvaShape` {0:?} (scaled) is invalid: sizes must be finite and above 0")]
     Shape(SalvaShape),
     /// A body's shape is hollow or endless.
-    #[error("a body cannot be a `SalvaShape::Tank` or a `Plane`")]
+    #[error("a body cannot be a `SalvaShape::Tank` or the `SolidShape::Ground`")]
     BodyShape,
     /// The transform is not finite.
     #[error("its transform is not finite")]

@@ -19,10 +19,10 @@
 //!         SalvaFluid::WATER,
 //!     ));
 //!     // A crate that will float.
-//!     let size = Vec3::splat(0.3);
+//!     let cube = Cuboid::from_length(0.3);
 //!     commands.spawn((
-//!         SalvaBody::new(SalvaShape::Cuboid { size }, 400.0),
-//!         Mesh3d(meshes.add(Cuboid::from_size(size))),
+//!         SalvaBody::new(cube, 400.0),
+//!         Mesh3d(meshes.add(cube)),
 //!         Transform::from_xyz(0.5, 0.8, 0.0),
 //!     ));
 //! }
@@ -35,9 +35,10 @@
 //!
 //! # What happens in a frame
 //!
-//! In [`PostUpdate`], before transforms are propagated, finished steps are collected, changes are
-//! gathered, the next steps begin on other threads, and positions interpolated between the last two
-//! finished states are written to [`FluidParticles`](crate::particles::FluidParticles) and to the bodies'
+//! In [`FluidSystems::Simulate`](crate::FluidSystems::Simulate), finished steps are collected,
+//! changes are gathered, the next steps begin on other threads, and positions interpolated between
+//! the last two finished states are written to
+//! [`FluidParticles`](crate::particles::FluidParticles) and to the bodies'
 //! `Transform`. The app never waits, not even for the hulls and trees of meshes: the picture lags a
 //! frame and a step behind, and where the machine is too slow the liquid moves in slow motion
 //! ([`SalvaStatus::speed`]), but boundaries do not. [`SalvaSettings::budget`] limits how much of a
@@ -83,7 +84,9 @@ mod solids;
 mod tests;
 mod world;
 
-use bevy::prelude::*;
+use bevy::{
+    asset::AssetEventSystems, mesh::mark_3d_meshes_as_changed_if_their_assets_changed, prelude::*,
+};
 
 pub use self::{
     error::SalvaError,
@@ -92,18 +95,16 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::{schedule::FluidSystems, settings::check, source::emitter::ParticleEmitter};
+use crate::{schedule::Movers, settings::check, source::emitter::ParticleEmitter};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
 /// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
 /// fluids; the simulation also runs without it.
+///
+/// It runs in [`FluidSystems::Simulate`](crate::FluidSystems::Simulate): anything moved or spawned
+/// before that takes part in the steps that begin there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SalvaPlugin;
-
-/// The systems of [`SalvaPlugin`], in [`PostUpdate`] before transforms are propagated: anything
-/// moved or spawned before them takes part in the steps they begin.
-#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
-pub struct SalvaSystems;
 
 impl Plugin for SalvaPlugin {
     fn build(&self, app: &mut App) {
@@ -134,18 +135,14 @@ impl Plugin for SalvaPlugin {
                     (show::show_fluids, show::show_bodies, show::show_loads)
                         .chain()
                         .run_if(runner::goes_on),
+                    // From where nozzles are seen, into the steps of the next frame.
+                    emit::emit.run_if(runner::goes_on),
                 )
                     .chain()
-                    .in_set(SalvaSystems)
-                    .after(FluidSystems::Check)
-                    .before(TransformSystems::Propagate),
-            )
-            .add_systems(
-                PostUpdate,
-                emit::emit
-                    .run_if(runner::goes_on)
-                    .in_set(FluidSystems::Emit)
-                    .after(TransformSystems::Propagate),
+                    .in_set(Movers::Simulation)
+                    // Meshes that have changed are told of there.
+                    .after(AssetEventSystems)
+                    .after(mark_3d_meshes_as_changed_if_their_assets_changed),
             );
     }
 }

@@ -9,6 +9,7 @@ use super::{
     SalvaError, SalvaShape,
     world::{Geometry, Recipe, Triangle},
 };
+use crate::source::solid::SolidShape;
 
 /// An entity's place without its scale, and the scale, shear included, by itself.
 pub(crate) fn split(transform: &GlobalTransform) -> Result<(Isometry3d, Mat3), SalvaError> {
@@ -33,36 +34,15 @@ pub(crate) fn recipe(
         scale.y_axis.length(),
         scale.z_axis.length(),
     );
-    let greatest = factors.max_element();
-    let length = |length: f32| {
-        let length = length * greatest;
-        let is_sound = length.is_finite() && length > 0.0;
-        is_sound.then_some(length).ok_or(SalvaError::Shape(shape))
-    };
-    let half = |size: Vec3| {
-        let half = 0.5 * size * factors;
-        let is_sound = half.is_finite() && half.cmpgt(Vec3::ZERO).all();
-        is_sound.then_some(half).ok_or(SalvaError::Shape(shape))
-    };
+    let refused = SalvaError::Shape(shape);
     let geometry = match shape {
-        SalvaShape::Cuboid { size } => Some(Geometry::cuboid(half(size)?)),
-        SalvaShape::Sphere { radius } => Some(Geometry::sphere(length(radius)?)),
-        SalvaShape::Capsule {
-            radius,
-            length: shaft,
-        } => {
-            // A shaft of no length makes a ball.
-            let shaft = if shaft == 0.0 { 0.0 } else { length(shaft)? };
-            Some(Geometry::capsule(length(radius)?, 0.5 * shaft))
-        }
-        SalvaShape::Cylinder { radius, height } => {
-            Geometry::cylinder(length(radius)?, 0.5 * length(height)?)
-        }
-        SalvaShape::Tank { .. } | SalvaShape::Plane if is_body => {
+        SalvaShape::Tank { .. } | SalvaShape::Solid(SolidShape::Ground) if is_body => {
             return Err(SalvaError::BodyShape);
         }
-        SalvaShape::Tank { size } => Geometry::tank(half(size)?),
-        SalvaShape::Plane => Some(Geometry::plane()),
+        SalvaShape::Tank { half_size } => {
+            Geometry::tank(sound(half_size * factors).ok_or(refused)?)
+        }
+        SalvaShape::Solid(solid) => solid_geometry(solid.scaled(factors)),
         SalvaShape::Mesh => {
             let faces = mesh.and_then(|mesh| triangles(mesh, scale));
             let faces = faces.ok_or(SalvaError::Mesh)?;
@@ -70,7 +50,37 @@ pub(crate) fn recipe(
             return Ok(recipe(faces));
         }
     };
-    geometry.map(Recipe::Made).ok_or(SalvaError::Shape(shape))
+    geometry.map(Recipe::Made).ok_or(refused)
+}
+
+/// None where a size is not finite and above 0.
+fn solid_geometry(solid: SolidShape) -> Option<Geometry> {
+    match solid {
+        SolidShape::Ground => Some(Geometry::plane()),
+        SolidShape::Sphere { radius } => {
+            sound(Vec3::splat(radius)).map(|_| Geometry::sphere(radius))
+        }
+        SolidShape::Cuboid { half_size } => sound(half_size).map(Geometry::cuboid),
+        SolidShape::Capsule {
+            radius,
+            half_length,
+        } => {
+            // A shaft of no length makes a ball.
+            sound(vec3(radius, radius, radius + half_length))?;
+            (half_length >= 0.0).then(|| Geometry::capsule(radius, half_length))
+        }
+        SolidShape::Cylinder {
+            radius,
+            half_height,
+        } => {
+            sound(vec3(radius, radius, half_height))?;
+            Geometry::cylinder(radius, half_height)
+        }
+    }
+}
+
+fn sound(size: Vec3) -> Option<Vec3> {
+    (size.is_finite() && size.cmpgt(Vec3::ZERO).all()).then_some(size)
 }
 
 /// The triangles of a mesh, scaled. A scale that mirrors turns them round again.

@@ -1,6 +1,6 @@
 //! From finished states to components.
 
-use bevy::{prelude::*, transform::helper::TransformHelper};
+use bevy::prelude::*;
 
 use super::{
     SalvaBody, SalvaFluid, SalvaLoad,
@@ -8,7 +8,7 @@ use super::{
     shape::split,
     world::{Frame, blend},
 };
-use crate::source::particles::FluidParticles;
+use crate::source::particles::{FluidParticles, ParticleSpace};
 
 /// The state shown last, which is not written again.
 #[derive(Default, PartialEq, Clone, Copy)]
@@ -34,14 +34,15 @@ impl Shown {
     }
 }
 
-/// Writes the particles of fluids in their entities' spaces.
+/// Writes the particles of fluids.
 pub(crate) fn show_fluids(
     mut simulation: ResMut<Simulation>,
     mut fluids: Query<(Entity, &mut FluidParticles), With<SalvaFluid>>,
-    transforms: TransformHelper,
     mut shown: Local<Shown>,
 ) {
-    let is_other = shown.update(&simulation);
+    if !shown.update(&simulation) {
+        return;
+    }
     let share = simulation.share();
     let Simulation {
         from,
@@ -58,22 +59,17 @@ pub(crate) fn show_fluids(
         let Some(end) = to.liquid(id).filter(|_| to.applied >= entry.told) else {
             continue;
         };
-        let Ok(space) = transforms.compute_global_transform(entity) else {
-            continue;
-        };
-        let space = space.affine();
-        if !is_other && space == entry.space {
-            continue;
-        }
-        let to_space = space.inverse();
-        if !to_space.is_finite() {
-            continue;
-        }
-        entry.space = space;
         let start = from.liquid(id).filter(|_| from.applied >= entry.told);
-        particles.positions.clear();
-        let places = blend(start, end, share).map(|place| to_space.transform_point3(place));
-        particles.positions.extend(places);
+        let fluid = &mut *particles;
+        fluid.space = ParticleSpace::World;
+        fluid.radius = entry.radius;
+        fluid.ids.clone_from(&end.ids);
+        fluid.positions.clear();
+        fluid.velocities.clear();
+        for (place, velocity) in blend(start, end, share) {
+            fluid.positions.push(place);
+            fluid.velocities.push(velocity);
+        }
         entry.written = particles.last_changed();
     }
 }

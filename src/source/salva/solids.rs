@@ -2,9 +2,13 @@
 
 use bevy::prelude::*;
 
-use crate::settings::{Checked, SettingRange, Settings};
+use crate::{
+    settings::{Checked, SettingRange, Settings},
+    source::solid::SolidShape,
+};
 
-/// A shape in the space of its entity, scaled by the entity's transform.
+/// The shape of a simulated solid in the space of its entity, scaled by the entity's transform.
+/// Bevy's primitives convert into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum SalvaShape {
@@ -14,45 +18,21 @@ pub enum SalvaShape {
     /// hull, which must have a volume. Later changes within a mesh are not detected.
     #[default]
     Mesh,
-    /// A solid block around the origin.
-    Cuboid {
-        /// Full side lengths. Unit: m, range 1e-6..=1e6.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6))]
-        size: Vec3,
-    },
+    /// A convex solid. Its sizes must be above 0, but for the half length of a capsule; the ground
+    /// is only for boundaries.
+    Solid(SolidShape),
     /// A box around the origin with liquid inside, open at the top. Only for boundaries.
     Tank {
-        /// Full side lengths of the inside. Unit: m, range 1e-6..=1e6.
+        /// Half of the side lengths of the inside. Unit: m, range 1e-6..=1e6.
         #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6))]
-        size: Vec3,
+        half_size: Vec3,
     },
-    /// A ball around the origin. With a non-uniform scale, the largest component applies.
-    Sphere {
-        /// Unit: m, range 1e-6..=1e6.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
-        radius: f32,
-    },
-    /// A capsule along y around the origin. With a non-uniform scale, the largest component applies.
-    Capsule {
-        /// Unit: m, range 1e-6..=1e6.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
-        radius: f32,
-        /// Distance between the centres of its caps. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e3).unit("m").logarithmic().valid(0.0, 1e6).initial(0.2))]
-        length: f32,
-    },
-    /// A cylinder along y around the origin. Of a non-uniform scale, the greatest component
-    /// applies.
-    Cylinder {
-        /// Unit: m, range 1e-6..=1e6.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.1))]
-        radius: f32,
-        /// Unit: m, range 1e-6..=1e6.
-        #[reflect(@SettingRange::new(1e-3, 1e3).unit("m").logarithmic().valid(1e-6, 1e6).initial(0.2))]
-        height: f32,
-    },
-    /// The endless ground below the entity's plane y = 0. Only for boundaries.
-    Plane,
+}
+
+impl<T: Into<SolidShape>> From<T> for SalvaShape {
+    fn from(solid: T) -> Self {
+        Self::Solid(solid.into())
+    }
 }
 
 /// A solid that liquid and [`SalvaBody`]s collide with: at rest, or moved by its transform.
@@ -83,27 +63,28 @@ pub struct SalvaBoundary {
 
 impl SalvaBoundary {
     /// The surface of the entity's `Mesh3d`.
-    pub const MESH: Self = Self::new(SalvaShape::Mesh);
+    pub const MESH: Self = Self::of(SalvaShape::Mesh);
     /// Endless ground.
-    pub const PLANE: Self = Self::new(SalvaShape::Plane);
+    pub const GROUND: Self = Self::of(SalvaShape::Solid(SolidShape::Ground));
 
-    /// A boundary of a shape.
-    pub const fn new(shape: SalvaShape) -> Self {
+    /// A boundary of a shape, such as one of Bevy's primitives.
+    pub fn new(shape: impl Into<SalvaShape>) -> Self {
+        Self::of(shape.into())
+    }
+
+    /// A box with liquid inside, open at the top; `size` (m) is that of the inside.
+    pub fn tank(size: Vec3) -> Self {
+        Self::of(SalvaShape::Tank {
+            half_size: 0.5 * size,
+        })
+    }
+
+    const fn of(shape: SalvaShape) -> Self {
         Self {
             shape,
             friction: 0.5,
             restitution: 0.0,
         }
-    }
-
-    /// A box with liquid inside, open at the top; `size` (m) is that of the inside.
-    pub const fn tank(size: Vec3) -> Self {
-        Self::new(SalvaShape::Tank { size })
-    }
-
-    /// A block of `size` (m).
-    pub const fn cuboid(size: Vec3) -> Self {
-        Self::new(SalvaShape::Cuboid { size })
     }
 }
 
@@ -150,10 +131,10 @@ pub struct SalvaBody {
 }
 
 impl SalvaBody {
-    /// A body of a shape and a density (kg/m³), at rest.
-    pub const fn new(shape: SalvaShape, density: f32) -> Self {
+    /// A body of a shape, such as one of Bevy's primitives, and a density (kg/m³), at rest.
+    pub fn new(shape: impl Into<SalvaShape>, density: f32) -> Self {
         Self {
-            shape,
+            shape: shape.into(),
             density,
             velocity: Vec3::ZERO,
             angular_velocity: Vec3::ZERO,

@@ -8,7 +8,7 @@ use std::{
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 
 use super::{
-    SalvaBody, SalvaBoundary, SalvaFluid, SalvaPlugin, SalvaSettings, SalvaShape, SalvaStatus,
+    SalvaBody, SalvaBoundary, SalvaFluid, SalvaPlugin, SalvaSettings, SalvaStatus,
     runner::Simulation,
 };
 use crate::{
@@ -143,7 +143,7 @@ fn what_is_shown_moves_evenly_between_steps() {
         .velocity = velocity;
     let body = SalvaBody {
         velocity,
-        ..SalvaBody::new(SalvaShape::Sphere { radius: 0.1 }, 500.0)
+        ..SalvaBody::new(Sphere::new(0.1), 500.0)
     };
     let away = Vec3::Y * 5.0;
     let body = app
@@ -182,8 +182,8 @@ fn waiting(app: &App) -> usize {
 fn nothing_piles_up_while_time_stands_still() {
     let mut app = app();
     let water = drop_of_water(&mut app);
-    let plane = app.world_mut().spawn(SalvaBoundary::PLANE).id();
-    let ball = SalvaShape::Sphere { radius: 0.1 };
+    let plane = app.world_mut().spawn(SalvaBoundary::GROUND).id();
+    let ball = Sphere::new(0.1);
     let body = app.world_mut().spawn(SalvaBody::new(ball, 500.0)).id();
     let emitter = ParticleEmitter {
         particle_radius: 0.05,
@@ -201,9 +201,7 @@ fn nothing_piles_up_while_time_stands_still() {
         }
         let mut body = world.get_mut::<SalvaBody>(body).unwrap();
         body.friction = 0.01 * x;
-        body.shape = SalvaShape::Sphere {
-            radius: 0.1 + 1e-3 * x,
-        };
+        body.shape = Sphere::new(0.1 + 1e-3 * x).into();
         world.get_mut::<FluidParticles>(water).unwrap().positions = vec![vec3(x, 5.0, 0.0)];
         world.get_mut::<SalvaFluid>(water).unwrap().viscosity = 1e-3 * x;
         world.get_mut::<SalvaFluid>(jet).unwrap().viscosity = 1e-3 * x;
@@ -251,7 +249,7 @@ fn nothing_piles_up_when_salva_has_panicked() {
         ..default()
     };
     let jet = app.world_mut().spawn((emitter, SalvaFluid::WATER)).id();
-    let wall = app.world_mut().spawn(SalvaBoundary::PLANE).id();
+    let wall = app.world_mut().spawn(SalvaBoundary::GROUND).id();
     let panic = || panic!("as a test has it");
     app.world_mut().resource_mut::<Simulation>().before_job = Some(Arc::new(panic));
     let fall = |app: &mut App| {

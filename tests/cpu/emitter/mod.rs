@@ -74,8 +74,39 @@ fn run(app: &mut App, seconds: f32, rate: f32) {
     }
 }
 
-fn particles(app: &App, entity: Entity) -> &EmittedParticles {
-    app.world().get(entity).unwrap()
+/// All that is known of an emitter's particles.
+struct Particles<'a> {
+    fluid: &'a FluidParticles,
+    emitted: &'a EmittedParticles,
+}
+
+impl<'a> Particles<'a> {
+    fn len(&self) -> usize {
+        self.emitted.len()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.emitted.is_empty()
+    }
+
+    fn positions(&self) -> &'a [Vec3] {
+        &self.fluid.positions
+    }
+
+    fn velocities(&self) -> &'a [Vec3] {
+        &self.fluid.velocities
+    }
+
+    fn ages(&self) -> &'a [f32] {
+        self.emitted.ages()
+    }
+}
+
+fn particles(app: &App, entity: Entity) -> Particles<'_> {
+    Particles {
+        fluid: app.world().get(entity).unwrap(),
+        emitted: app.world().get(entity).unwrap(),
+    }
 }
 
 fn emitter(app: &mut App, entity: Entity) -> Mut<'_, ParticleEmitter> {
@@ -90,6 +121,7 @@ fn place(app: &mut App, entity: Entity) -> Mut<'_, Transform> {
 fn drawn(app: &App, entity: Entity) -> Vec<Vec3> {
     let transform = app.world().get::<GlobalTransform>(entity).unwrap();
     let fluid = app.world().get::<FluidParticles>(entity).unwrap();
+    let transform = fluid.world_from_particles(transform);
     let positions = fluid.positions.iter();
     positions.map(|&p| transform.transform_point(p)).collect()
 }

@@ -1,6 +1,6 @@
 //! Values that are invalid.
 
-use bevy_fluid::emitter::{ColliderShape, EmitterBounds};
+use bevy_fluid::{emitter::EmitterBounds, solid::SolidShape};
 
 use super::*;
 
@@ -20,24 +20,32 @@ const EMITTER_FIELDS: [(&str, fn(&mut Emitter, f32)); 11] = [
     ("drag", |e, v| e.drag = v),
 ];
 
-const SHAPES: [(&str, fn(f32) -> ColliderShape); 6] = [
-    ("shape.radius", |radius| ColliderShape::Sphere { radius }),
-    ("shape.half_size.x", |v| ColliderShape::Cuboid {
+const SHAPES: [(&str, fn(f32) -> SolidShape); 8] = [
+    ("shape.radius", |radius| SolidShape::Sphere { radius }),
+    ("shape.half_size.x", |v| SolidShape::Cuboid {
         half_size: vec3(v, 1.0, 1.0),
     }),
-    ("shape.half_size.y", |v| ColliderShape::Cuboid {
+    ("shape.half_size.y", |v| SolidShape::Cuboid {
         half_size: vec3(1.0, v, 1.0),
     }),
-    ("shape.half_size.z", |v| ColliderShape::Cuboid {
+    ("shape.half_size.z", |v| SolidShape::Cuboid {
         half_size: vec3(1.0, 1.0, v),
     }),
-    ("shape.radius", |radius| ColliderShape::Capsule {
+    ("shape.radius", |radius| SolidShape::Capsule {
         radius,
         half_length: 1.0,
     }),
-    ("shape.half_length", |half_length| ColliderShape::Capsule {
+    ("shape.half_length", |half_length| SolidShape::Capsule {
         radius: 1.0,
         half_length,
+    }),
+    ("shape.radius", |radius| SolidShape::Cylinder {
+        radius,
+        half_height: 1.0,
+    }),
+    ("shape.half_height", |half_height| SolidShape::Cylinder {
+        radius: 1.0,
+        half_height,
     }),
 ];
 

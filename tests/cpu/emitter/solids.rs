@@ -1,6 +1,6 @@
 //! Nothing enters a solid, whatever its speed.
 
-use bevy::math::{DQuat, DVec3};
+use bevy::math::{DQuat, DVec2, DVec3};
 use proptest::prelude::*;
 
 use super::*;
@@ -9,7 +9,7 @@ const RADIUS: f32 = 0.05;
 
 /// The distance of a point from a collider's surface, in f64, by formulas of its own.
 fn distance(collider: &ParticleCollider, transform: &Transform, point: Vec3) -> f64 {
-    use bevy_fluid::emitter::ColliderShape::*;
+    use bevy_fluid::solid::SolidShape::*;
     let turn = DQuat::from_array(transform.rotation.to_array().map(f64::from)).normalize();
     let local = turn.inverse() * (point - transform.translation).as_dvec3();
     let scale = transform.scale.as_dvec3().abs();
@@ -22,6 +22,17 @@ fn distance(collider: &ParticleCollider, transform: &Transform, point: Vec3) -> 
             let outside = (local - nearest).length();
             let inside = (half_size - local.abs()).min_element();
             if outside > 0.0 { outside } else { -inside }
+        }
+        Cylinder {
+            radius,
+            half_height,
+        } => {
+            let radius = f64::from(radius) * scale.x.max(scale.z);
+            let beyond = DVec2::new(
+                local.with_y(0.0).length() - radius,
+                local.y.abs() - f64::from(half_height) * scale.y,
+            );
+            beyond.max(DVec2::ZERO).length() + beyond.max_element().min(0.0)
         }
         Capsule {
             radius,
@@ -44,6 +55,7 @@ fn shapes() -> impl Strategy<Value = ParticleCollider> {
         size().prop_map(|radius| Sphere::new(radius).into()),
         (size(), size(), 1e-3_f32..1.0).prop_map(|(x, y, z)| Cuboid::new(x, y, z).into()),
         (size(), size()).prop_map(|(radius, length)| Capsule3d::new(radius, length).into()),
+        (size(), size()).prop_map(|(radius, height)| Cylinder::new(radius, height).into()),
     ]
 }
 

@@ -15,7 +15,7 @@ fn hit(density: f32, speed: f32) -> ([Vec3; 2], [f32; 2], Vec3) {
     settings.max_substeps = 16;
     let side = 0.3;
     let size = Vec3::splat(side);
-    let body = SalvaBody::new(SalvaShape::Cuboid { size }, density);
+    let body = SalvaBody::new(Cuboid::from_size(size), density);
     let body = app.world_mut().spawn((body, Transform::default())).id();
     // Somewhat aside, so that the body turns too.
     let water = block(vec3(-0.7, -0.1, -0.2), vec3(-0.3, 0.3, 0.2));

@@ -13,7 +13,7 @@ fn flying() -> (App, Entity) {
     app.world_mut().resource_mut::<SalvaSettings>().gravity = Vec3::ZERO;
     let body = SalvaBody {
         velocity: VELOCITY,
-        ..SalvaBody::new(SalvaShape::Sphere { radius: 0.1 }, 500.0)
+        ..SalvaBody::new(Sphere::new(0.1), 500.0)
     };
     let body = app.world_mut().spawn(body).id();
     run(&mut app, 0.1);
@@ -49,7 +49,7 @@ fn a_body_goes_on_when_its_material_or_size_is_edited() {
         |it| it.friction = 0.1,
         |it| it.density = 900.0,
         |it| it.restitution = 0.9,
-        |it| it.shape = SalvaShape::Sphere { radius: 0.15 },
+        |it| it.shape = Sphere::new(0.15).into(),
     ];
     for (i, change) in changes.into_iter().enumerate() {
         edit(&mut app, body, change);
@@ -88,7 +88,7 @@ fn a_body_starts_anew_when_it_is_told_to() {
 fn a_boundary_inserted_again_is_elsewhere_at_once() {
     let mut app = app();
     app.world_mut().resource_mut::<SalvaSettings>().gravity = Vec3::ZERO;
-    let wall = SalvaBoundary::cuboid(vec3(0.2, 1.0, 1.0));
+    let wall = SalvaBoundary::new(Cuboid::new(0.2, 1.0, 1.0));
     let id = app
         .world_mut()
         .spawn((wall, Transform::from_xyz(-1.0, 0.0, 0.0)))

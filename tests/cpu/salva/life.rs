@@ -14,7 +14,7 @@ fn lockstep_repeats_itself() {
         let (_, water) = pool(&mut app, vec3(1.2, 1.0, 0.6), 0.4);
         let size = Vec3::splat(0.3);
         let body = app.world_mut().spawn((
-            SalvaBody::new(SalvaShape::Cuboid { size }, 400.0),
+            SalvaBody::new(Cuboid::from_size(size), 400.0),
             Transform::from_xyz(0.1, 0.8, 0.05),
         ));
         let body = body.id();
@@ -50,7 +50,7 @@ fn everything_may_come_and_go() {
     let mut app = app();
     let (tank, water) = pool(&mut app, vec3(0.8, 1.0, 0.8), 0.4);
     let size = Vec3::splat(0.2);
-    let body = SalvaBody::new(SalvaShape::Cuboid { size }, 400.0);
+    let body = SalvaBody::new(Cuboid::from_size(size), 400.0);
     let body = app
         .world_mut()
         .spawn((body, Transform::from_xyz(0.0, 0.8, 0.0)))
@@ -97,7 +97,7 @@ fn an_emitter_feeds_the_liquid() {
     let jet = app.world_mut().spawn((emitter, SalvaFluid::WATER, above));
     let jet = jet.id();
     app.world_mut()
-        .spawn((SalvaBoundary::PLANE, Transform::default()));
+        .spawn((SalvaBoundary::GROUND, Transform::default()));
     assert!(app.world().get::<ExternalMotion>(jet).is_some());
     run(&mut app, 0.3);
     let count = particles(&app, jet).len();
@@ -113,7 +113,7 @@ fn an_emitter_feeds_the_liquid() {
     let steady = particles(&app, jet).len();
     assert!(steady < 110 && steady > 30, "{steady}");
     // On the plane they lie, not below.
-    let lowest = particles(&app, jet).iter().map(|p| p.y + 1.0);
+    let lowest = particles(&app, jet).iter().map(|p| p.y);
     let lowest = lowest.fold(f32::INFINITY, f32::min);
     assert!((0.0..2.0 * RADIUS).contains(&lowest), "{lowest}");
 }

@@ -28,7 +28,7 @@ fn a_mesh_floats_as_the_shape_that_it_is() {
                 at,
             )
         } else {
-            let body = SalvaBody::new(SalvaShape::Cuboid { size }, SalvaBody::default().density);
+            let body = SalvaBody::new(Cuboid::from_size(size), SalvaBody::default().density);
             app.world_mut().spawn((body, at)).id()
         };
         run(&mut app, 2.0);

@@ -63,7 +63,7 @@ fn a_drop_falls_by_half_g_t_squared() {
 const POOL: f32 = 1.2;
 
 /// Mean heights of a body's centre and of the water after some time in a pool of depth 0.8.
-fn settle_body(shape: SalvaShape, density: f32, from: f32) -> (f32, f32) {
+fn settle_body(shape: impl Into<SalvaShape>, density: f32, from: f32) -> (f32, f32) {
     let mut app = app();
     let (_, water) = pool(&mut app, vec3(POOL, 2.0, POOL), 0.8);
     let body = app.world_mut().spawn((
@@ -86,7 +86,7 @@ fn a_box_floats_as_deep_as_archimedes_has_it() {
     let side = 0.4;
     for density in [300.0, 600.0] {
         let size = Vec3::splat(side);
-        let (height, water) = settle_body(SalvaShape::Cuboid { size }, density, 1.1);
+        let (height, water) = settle_body(Cuboid::from_size(size), density, 1.1);
         let immersed = side * density / WATER;
         // The level follows from the water's own mean height, which is a little lower than it should be:
         // that of a full pool of the level, less that of the part that the box takes.
@@ -110,7 +110,7 @@ fn a_box_floats_as_deep_as_archimedes_has_it() {
 #[test]
 fn what_is_heavier_sinks_to_the_bottom() {
     let radius = 0.2;
-    let (height, _) = settle_body(SalvaShape::Sphere { radius }, 3000.0, 1.1);
+    let (height, _) = settle_body(Sphere::new(radius), 3000.0, 1.1);
     assert!((height - radius).abs() < 0.01, "{height}");
 }
 

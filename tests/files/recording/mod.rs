@@ -4,6 +4,7 @@ mod background;
 mod files;
 mod gates;
 mod interpolation;
+mod sources;
 mod time;
 mod writing;
 

@@ -5,10 +5,7 @@ use std::{fs, iter, path::Path, sync::mpsc};
 use bevy::{prelude::*, tasks::IoTaskPool};
 use bevy_fluid::{
     prelude::{FluidParticles, FluidSystems},
-    recording::{
-        FluidRecording, ParticleAttributes, ParticleFrame, RecordingPlayer, RecordingWriter,
-        WrittenFrames,
-    },
+    recording::{FluidRecording, ParticleFrame, RecordingPlayer, RecordingWriter, WrittenFrames},
 };
 
 use super::{app, folder, log, play, seek, set_time_step, wait, x};
@@ -77,12 +74,11 @@ fn what_is_recorded_can_be_played() {
             ..writer(&made, &format!("age_###.{extension}"))
         };
         let (mut app, entity) = recorded(&folder, writer, 0.01);
-        app.world_mut()
-            .entity_mut(entity)
-            .insert(ParticleAttributes {
-                ids: vec![5],
-                velocities: vec![Vec3::X],
-            });
+        app.world_mut().entity_mut(entity).insert(FluidParticles {
+            ids: vec![5],
+            velocities: vec![Vec3::X],
+            ..FluidParticles::new(vec![Vec3::ZERO], 0.05)
+        });
         for _ in 0..21 {
             app.update();
         }

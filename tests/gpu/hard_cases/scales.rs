@@ -88,6 +88,22 @@ fn h12_a_million_metres_from_the_origin() {
     }
 }
 
+#[test]
+fn the_transform_leaves_particles_of_the_world_where_they_are() {
+    let mut app = show_far(Vec3::ZERO);
+    let kernel = SurfaceKernel::default();
+    let wanted = ink(&mut app, particles(), kernel, Vec3::ZERO);
+    let fluid = FluidParticles {
+        space: ParticleSpace::World,
+        ..FluidParticles::new(particles(), RADIUS)
+    };
+    let elsewhere = Transform::from_xyz(1.0, -2.0, 3.0)
+        .with_rotation(Quat::from_rotation_y(1.0))
+        .with_scale(vec3(2.0, 0.5, 3.0));
+    pour(&mut app, (fluid, kernel, FluidMaterial::INK, elsewhere));
+    assert_eq!(differing(&picture(&mut app), &wanted, 0), 0);
+}
+
 /// The whole scene, camera and walls included, `scale` times as large.
 fn scaled(scale: f32) -> RgbaImage {
     let mut view = view();

@@ -3,6 +3,7 @@
 use bevy::{
     math::{Vec3A, bounding::Aabb3d},
     prelude::*,
+    transform::helper::TransformHelper,
 };
 
 use super::{
@@ -41,17 +42,16 @@ impl Colliders {
     /// Collects all colliders of this step.
     pub(in crate::source::emitter) fn gather(
         &mut self,
-        colliders: &mut Query<(
-            &Checked<ParticleCollider>,
-            &GlobalTransform,
-            &mut ColliderPath,
-        )>,
+        colliders: &mut Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
+        transforms: &TransformHelper,
     ) {
         self.list.clear();
         self.half_spaces = 0;
         self.bounds = NOWHERE;
-        for (collider, transform, mut path) in colliders {
-            let Some(collider) = Collider::new(collider, transform, &mut path) else {
+        for (entity, collider, mut path) in colliders {
+            let transform = transforms.compute_global_transform(entity).ok();
+            let collider = transform.and_then(|at| Collider::new(collider, &at, &mut path));
+            let Some(collider) = collider else {
                 continue;
             };
             let reach = collider.reach;

@@ -9,7 +9,10 @@ pub(super) use self::{
     list::Colliders,
     moving::{Collider, ColliderPath},
 };
-use crate::settings::{Checked, SettingRange, Settings};
+use crate::{
+    settings::{Checked, SettingRange, Settings},
+    source::solid::SolidShape,
+};
 
 /// A solid that the particles of every [`ParticleEmitter`](super::ParticleEmitter) bounce off. It
 /// follows the transform of its entity, scale included; a collider that moves or turns carries
@@ -25,7 +28,7 @@ use crate::settings::{Checked, SettingRange, Settings};
 /// let ball = Sphere::new(0.3);
 /// commands.spawn((
 ///     Mesh3d(meshes.add(ball)),
-///     ParticleCollider { restitution: 0.6, ..ball.into() },
+///     ParticleCollider { restitution: 0.6, ..ParticleCollider::new(ball) },
 ///     Transform::from_xyz(0.0, 1.0, 0.0),
 /// ));
 /// # }
@@ -35,7 +38,7 @@ use crate::settings::{Checked, SettingRange, Settings};
 #[require(Transform, ColliderPath, Checked<Self>)]
 pub struct ParticleCollider {
     /// Its shape. Default: the ground.
-    pub shape: ColliderShape,
+    pub shape: SolidShape,
     /// Restitution: share of the speed across the surface that is left after a bounce. Range 0..=1,
     /// default 0.2. Higher: particles bounce more; 0: they stay on it.
     #[reflect(@SettingRange::new(0.0, 1.0))]
@@ -46,44 +49,21 @@ pub struct ParticleCollider {
     pub friction: f32,
 }
 
-/// The shape of a [`ParticleCollider`], in its entity's space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[reflect(Default, Clone, PartialEq)]
-pub enum ColliderShape {
-    /// Everything below the xz plane.
-    #[default]
-    Ground,
-    /// A ball around the origin. With a non-uniform scale, the largest component applies.
-    Sphere {
-        /// Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
-        radius: f32,
-    },
-    /// An axis-aligned box around the origin.
-    Cuboid {
-        /// Half of its side lengths. Unit: m, range 0..=1e6 each.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
-        half_size: Vec3,
-    },
-    /// A cylinder along y with a hemisphere at each end. The greater of the scales along x and z
-    /// applies to the radius.
-    Capsule {
-        /// Radius of the cylinder and the hemispheres. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
-        radius: f32,
-        /// Half of the cylinder's length, without the hemispheres. Unit: m, range 0..=1e6.
-        #[reflect(@SettingRange::new(0.0, 1e6).unit("m").logarithmic())]
-        half_length: f32,
-    },
-}
-
 impl ParticleCollider {
     /// The default: the ground.
     pub const DEFAULT: Self = Self {
-        shape: ColliderShape::Ground,
+        shape: SolidShape::Ground,
         restitution: 0.2,
         friction: 0.2,
     };
+
+    /// A collider of this shape, such as one of Bevy's primitives.
+    pub fn new(shape: impl Into<SolidShape>) -> Self {
+        Self {
+            shape: shape.into(),
+            ..Self::DEFAULT
+        }
+    }
 
     /// Everything below the entity's xz plane.
     pub const fn ground() -> Self {
@@ -99,33 +79,8 @@ impl Default for ParticleCollider {
     }
 }
 
-impl From<ColliderShape> for ParticleCollider {
-    fn from(shape: ColliderShape) -> Self {
-        Self {
-            shape,
-            ..Self::DEFAULT
-        }
-    }
-}
-
-impl From<Sphere> for ParticleCollider {
-    fn from(Sphere { radius }: Sphere) -> Self {
-        ColliderShape::Sphere { radius }.into()
-    }
-}
-
-impl From<Cuboid> for ParticleCollider {
-    fn from(Cuboid { half_size }: Cuboid) -> Self {
-        ColliderShape::Cuboid { half_size }.into()
-    }
-}
-
-impl From<Capsule3d> for ParticleCollider {
-    fn from(capsule: Capsule3d) -> Self {
-        ColliderShape::Capsule {
-            radius: capsule.radius,
-            half_length: capsule.half_length,
-        }
-        .into()
+impl<T: Into<SolidShape>> From<T> for ParticleCollider {
+    fn from(shape: T) -> Self {
+        Self::new(shape)
     }
 }

@@ -5,8 +5,8 @@ use bevy::{
     prelude::*,
 };
 
-use super::{ColliderShape, ParticleCollider};
-use crate::source::emitter::distance::Solid;
+use super::ParticleCollider;
+use crate::source::solid::SolidShape;
 
 /// Where a collider was at the end of the last frame.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -32,7 +32,7 @@ impl Pose {
 /// A collider in the world during a step.
 #[derive(Debug)]
 pub(in crate::source::emitter) struct Collider {
-    pub(in crate::source::emitter) solid: Solid,
+    pub(in crate::source::emitter) solid: SolidShape,
     pub(in crate::source::emitter) restitution: f32,
     pub(in crate::source::emitter) friction: f32,
     /// At the end of the step.
@@ -67,23 +67,7 @@ impl Collider {
             translation: translation.into(),
         };
         let from = path.0.replace(to).unwrap_or(to);
-        let scale = scale.abs();
-        let solid = match collider.shape {
-            ColliderShape::Ground => Solid::HalfSpace,
-            ColliderShape::Sphere { radius } => Solid::Sphere {
-                radius: radius * scale.max_element(),
-            },
-            ColliderShape::Cuboid { half_size } => Solid::Cuboid {
-                half_size: (half_size * scale).into(),
-            },
-            ColliderShape::Capsule {
-                radius,
-                half_length,
-            } => Solid::Capsule {
-                radius: radius * scale.x.max(scale.z),
-                half_length: half_length * scale.y,
-            },
-        };
+        let solid = collider.shape.scaled(scale);
         let world_from_local = Affine3A::from_rotation_translation(rotation, translation);
         Some(Self {
             solid,
@@ -168,20 +152,24 @@ pub(super) fn overlaps(bounds: &Aabb3d, start: Vec3A, end: Vec3A, radius: f32) -
 }
 
 impl Reach {
-    fn new(solid: &Solid, poses: [Pose; 2]) -> Self {
+    fn new(solid: &SolidShape, poses: [Pose; 2]) -> Self {
         let half_size = match *solid {
-            Solid::HalfSpace => {
+            SolidShape::Ground => {
                 return Self::Below(poses.map(|pose| {
                     let normal = pose.rotation * Vec3A::Y;
                     (normal, normal.dot(pose.translation))
                 }));
             }
-            Solid::Sphere { radius } => Vec3A::splat(radius),
-            Solid::Cuboid { half_size } => half_size,
-            Solid::Capsule {
+            SolidShape::Sphere { radius } => Vec3A::splat(radius),
+            SolidShape::Cuboid { half_size } => half_size.into(),
+            SolidShape::Capsule {
                 radius,
                 half_length,
             } => Vec3A::new(radius, radius + half_length, radius),
+            SolidShape::Cylinder {
+                radius,
+                half_height,
+            } => Vec3A::new(radius, half_height, radius),
         };
         let [from, to] = poses.map(|pose| pose.translation);
         let reach = if poses[0].rotation == poses[1].rotation {

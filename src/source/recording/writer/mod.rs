@@ -5,21 +5,29 @@ mod written;
 
 use std::path::Path;
 
-use bevy::{prelude::*, tasks::IoTaskPool};
+use bevy::{prelude::*, tasks::IoTaskPool, transform::helper::TransformHelper};
 
 use self::job::description;
 pub use self::written::WrittenFrames;
-use super::{error::RecordingError, frame::is_radius, pattern::FramePattern};
+use super::{
+    error::RecordingError,
+    frame::{ParticleFrame, is_radius},
+    pattern::FramePattern,
+};
 use crate::{
     settings::{Checked, SettingRange, Settings},
-    source::particles::FluidParticles,
+    source::particles::{FluidParticles, ParticleSpace},
 };
 
 /// Frames of the clock may be a little short.
 const TOLERANCE: f64 = 1e-3;
 
 /// Writes the [`FluidParticles`] on its entity to numbered files, in the format of their extension,
-/// with the [`ParticleAttributes`] if there are some, and a `.fluid.ron` for playing them.
+/// with velocities and ids where they are known, and a `.fluid.ron` for playing them.
+///
+/// Files are in the entity's space. Of particles in the [world](ParticleSpace::World), velocities
+/// are left out of a frame in which the entity's place in it is not that of the frame before:
+/// players then move them on lines.
 ///
 /// Frame n is the state in the first frame of the app at or after n / `rate`, counted from the
 /// frame in which the component is added. Everything is written in the background; if files are
@@ -70,29 +78,18 @@ impl RecordingWriter {
     }
 }
 
-/// Ids and velocities of the particles of the fluid on its entity, for a [`RecordingWriter`]: the
-/// code that moves the particles keeps them up to date.
-#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
-#[reflect(Component, Default, Clone, PartialEq)]
-pub struct ParticleAttributes {
-    /// Ids that match particles from frame to frame, so that players can interpolate: one for each
-    /// particle, or none at all.
-    pub ids: Vec<u32>,
-    /// Velocities: one for each particle, or none at all. Unit: m/s.
-    pub velocities: Vec<Vec3>,
-}
-
 pub(in crate::source::recording) fn record(
     mut writers: Query<(
+        Entity,
         Ref<RecordingWriter>,
         &Checked<RecordingWriter>,
         &mut WrittenFrames,
         &FluidParticles,
-        Option<&ParticleAttributes>,
     )>,
+    transforms: TransformHelper,
     time: Res<Time>,
 ) {
-    for (set, writer, mut written, particles, attributes) in &mut writers {
+    for (entity, set, writer, mut written, particles) in &mut writers {
         let written = &mut *written;
         written.collect();
         if set.is_changed() {
@@ -119,7 +116,9 @@ pub(in crate::source::recording) fn record(
                 written.dropped += 1;
                 return Ok(());
             }
-            start(number, &pattern, writer, written, particles, attributes)
+            let place = transforms.compute_global_transform(entity);
+            let place = place.unwrap_or_default();
+            start(number, &pattern, writer, written, particles, &place)
         });
         if let Err(error) = result {
             written.fail(&error.to_string());
@@ -154,18 +153,17 @@ fn start(
     writer: &RecordingWriter,
     written: &mut WrittenFrames,
     particles: &FluidParticles,
-    attributes: Option<&ParticleAttributes>,
+    place: &GlobalTransform,
 ) -> Result<(), RecordingError> {
     let mut job = written.spare.pop().unwrap_or_default();
     let frame = &mut job.frame;
-    frame.positions.clone_from(&particles.positions);
-    frame.radius = Some(particles.radius).filter(|&radius| is_radius(radius));
-    frame.ids.clear();
-    frame.velocities.clear();
-    if let Some(attributes) = attributes {
-        frame.ids.extend_from_slice(&attributes.ids);
-        frame.velocities.extend_from_slice(&attributes.velocities);
-    }
+    let last = written.place.replace(*place);
+    write(
+        frame,
+        particles,
+        place,
+        last.is_none_or(|last| last == *place),
+    );
     let folder = Path::new(pattern.folder());
     job.path = folder.join(pattern.file_name(number));
     // With the first frame that is not left out.
@@ -180,4 +178,35 @@ fn start(
         (job, result)
     }));
     Ok(())
+}
+
+/// Writes particles to a frame in the space of their entity, at `place`, which may have moved.
+fn write(
+    frame: &mut ParticleFrame,
+    particles: &FluidParticles,
+    place: &GlobalTransform,
+    stays: bool,
+) {
+    frame.positions.clone_from(&particles.positions);
+    frame.velocities.clear();
+    frame
+        .velocities
+        .extend_from_slice(particles.whole_velocities());
+    frame.ids.clear();
+    frame.ids.extend_from_slice(particles.whole_ids());
+    let mut radius = particles.radius;
+    let to_entity = place.affine().inverse();
+    if particles.space == ParticleSpace::World && to_entity.is_finite() {
+        if !stays {
+            frame.velocities.clear();
+        }
+        for position in &mut frame.positions {
+            *position = to_entity.transform_point3(*position);
+        }
+        for velocity in &mut frame.velocities {
+            *velocity = to_entity.transform_vector3(*velocity);
+        }
+        radius *= to_entity.matrix3.determinant().abs().cbrt();
+    }
+    frame.radius = Some(radius).filter(|&radius| is_radius(radius));
 }

@@ -21,6 +21,8 @@ pub struct WrittenFrames {
     /// Recorded time. Unit: s.
     pub(super) elapsed: f64,
     pub(super) last: Option<u32>,
+    /// Where the entity was in the last frame.
+    pub(super) place: Option<GlobalTransform>,
     pub(super) jobs: Vec<Task<(Job, Result<(), FrameError>)>>,
     /// Their buffers are used again.
     pub(super) spare: Vec<Job>,
@@ -98,6 +100,7 @@ impl WrittenFrames {
         self.is_described = false;
         self.elapsed = 0.0;
         self.last = None;
+        self.place = None;
         (self.written, self.dropped) = (0, 0);
     }
 }

@@ -1,13 +1,11 @@
 //! Fluids: new ones, changed ones, and particles written by other code.
 
-use bevy::{
-    ecs::change_detection::Tick, math::Affine3A, prelude::*, transform::helper::TransformHelper,
-};
+use bevy::{ecs::change_detection::Tick, prelude::*, transform::helper::TransformHelper};
 
 use crate::{
     settings::Checked,
     source::emitter::ParticleEmitter,
-    source::particles::FluidParticles,
+    source::particles::{FluidParticles, ParticleSpace},
     source::salva::{
         SalvaError, SalvaFluid,
         error::Warned,
@@ -24,13 +22,12 @@ pub(crate) struct FluidEntry {
     pub(crate) written: Tick,
     /// Number of commands that the world must have applied to have these particles.
     pub(crate) told: u64,
-    /// The transform that its particles were written with.
-    pub(crate) space: Affine3A,
+    /// The radius that its emitter asked for, if it has one.
+    asked: Option<f32>,
     /// The limits sent for its particles, if an emitter feeds it.
     pub(crate) limits: Option<Limits>,
 }
 
-/// Two radii that are the same but for rounding in transforms.
 const SAME_RADIUS: f32 = 1e-3;
 
 impl From<&SalvaFluid> for Substance {
@@ -67,18 +64,15 @@ pub(crate) fn gather_fluids(
         }
     }
     for (entity, fluid, mut particles, emitter) in &mut fluids {
-        if let Some(emitter) = emitter {
-            let radius = emitter.particle_radius;
-            if particles.radius != radius {
-                particles.radius = radius;
-            }
-        } else if let Some(entry) = simulation.fluids.get_mut(&entity)
+        let asked = emitter.map(|emitter| emitter.particle_radius);
+        if asked.is_none()
+            && let Some(entry) = simulation.fluids.get_mut(&entity)
             && entry.limits.take().is_some()
         {
             // Particles that the emitter limited stay now.
             simulation.tell(Command::Limit(entity.to_bits(), Limits::default()));
         }
-        let taken = simulation.take_fluid(entity, &fluid, &particles, &transforms);
+        let taken = simulation.take_fluid(entity, &fluid, &mut particles, asked, &transforms);
         if let Some(error) = warned.news(entity, taken) {
             warn!("fluid {entity} is not simulated: {error}");
         }
@@ -86,25 +80,56 @@ pub(crate) fn gather_fluids(
 }
 
 impl Simulation {
+    /// Takes over particles that other code has written. `asked` is the radius that the fluid's
+    /// emitter asks for, in its own space.
     fn take_fluid(
         &mut self,
         entity: Entity,
         fluid: &Ref<Checked<SalvaFluid>>,
-        particles: &Mut<FluidParticles>,
+        particles: &mut Mut<FluidParticles>,
+        asked: Option<f32>,
         transforms: &TransformHelper,
     ) -> Result<(), SalvaError> {
         let id = entity.to_bits();
-        let known = self.fluids.get(&entity);
-        let is_written = known.is_some_and(|known| known.written == particles.last_changed());
-        if is_written {
-            if fluid.is_changed() {
-                self.tell(Command::Substance(id, Substance::from(&***fluid)));
+        let written = particles.last_changed();
+        let known = self.fluids.get_mut(&entity);
+        let mut known = known.filter(|known| known.written == written);
+        if known.as_ref().is_none_or(|known| known.asked != asked) {
+            let place = transforms.compute_global_transform(entity);
+            let place = place.map_err(|_| SalvaError::Transform)?;
+            let space = particles.world_from_particles(&place);
+            let own = match (asked, particles.space) {
+                (Some(asked), ParticleSpace::World) => asked * mean_scale(&place),
+                (Some(asked), ParticleSpace::Local) => asked,
+                (None, _) => particles.radius,
+            };
+            let radius = own * mean_scale(&space);
+            if let Some(known) = known.as_mut().filter(|known| is_like(known.radius, radius)) {
+                known.asked = asked;
+            } else {
+                if particles.radius != own {
+                    particles.radius = own;
+                }
+                let entry = self.begin_fluid(entity, fluid, particles, radius, &space)?;
+                self.fluids.insert(entity, FluidEntry { asked, ..entry });
+                return Ok(());
             }
-            return Ok(());
         }
-        let space = transforms.compute_global_transform(entity);
-        let space = space.map_err(|_| SalvaError::Transform)?.affine();
-        let radius = particles.radius * space.matrix3.determinant().abs().cbrt();
+        if fluid.is_changed() {
+            self.tell(Command::Substance(id, Substance::from(&***fluid)));
+        }
+        Ok(())
+    }
+
+    fn begin_fluid(
+        &mut self,
+        entity: Entity,
+        fluid: &SalvaFluid,
+        particles: &mut Mut<FluidParticles>,
+        radius: f32,
+        space: &GlobalTransform,
+    ) -> Result<FluidEntry, SalvaError> {
+        let id = entity.to_bits();
         if !(radius.is_finite() && radius > 0.0) {
             return Err(SalvaError::Radius(particles.radius));
         }
@@ -113,7 +138,7 @@ impl Simulation {
         }
         if let Some(other) = self.fluids.values().next() {
             let others = other.radius;
-            if (radius / others - 1.0).abs() > SAME_RADIUS {
+            if !is_like(radius, others) {
                 return Err(SalvaError::OtherRadius {
                     own: radius,
                     others,
@@ -124,18 +149,29 @@ impl Simulation {
         }
         let places = particles.positions.iter();
         let newborn = Newborn {
-            positions: places.map(|&place| space.transform_point3(place)).collect(),
+            positions: places.map(|&place| space.transform_point(place)).collect(),
             velocities: vec![fluid.velocity],
         };
-        let told = self.tell(Command::Fluid(id, Substance::from(&***fluid), newborn));
-        let entry = FluidEntry {
+        // Those of particles that have been replaced.
+        particles.velocities.clear();
+        particles.ids.clear();
+        let told = self.tell(Command::Fluid(id, Substance::from(fluid), newborn));
+        Ok(FluidEntry {
             radius,
             written: particles.last_changed(),
             told,
-            space,
+            asked: None,
             limits: None,
-        };
-        self.fluids.insert(entity, entry);
-        Ok(())
+        })
     }
+}
+
+/// Whether two radii are the same but for rounding in transforms.
+fn is_like(a: f32, b: f32) -> bool {
+    (a / b - 1.0).abs() <= SAME_RADIUS
+}
+
+/// The scale of a sphere of the same volume.
+fn mean_scale(transform: &GlobalTransform) -> f32 {
+    transform.affine().matrix3.determinant().abs().cbrt()
 }

@@ -25,6 +25,8 @@ pub(crate) struct LiquidFrame {
     pub(crate) ids: Vec<u32>,
     /// World space, m.
     pub(crate) positions: Vec<Vec3>,
+    /// World space, m/s.
+    pub(crate) velocities: Vec<Vec3>,
 }
 
 impl Frame {
@@ -38,24 +40,30 @@ impl Frame {
     }
 }
 
-/// Interpolated positions of the particles of `to`, a `share` of the way from `from` to it. New
-/// ones are where they are in `to`; those that have gone are left out.
+/// Interpolated positions and velocities of the particles of `to`, a `share` of the way from `from`
+/// to it. New ones are as they are in `to`; those that have gone are left out.
 pub(crate) fn blend<'a>(
     from: Option<&'a LiquidFrame>,
     to: &'a LiquidFrame,
     share: f32,
-) -> impl Iterator<Item = Vec3> + 'a {
-    let (ids, positions) = from.map_or((&[][..], &[][..]), |from| (&*from.ids, &*from.positions));
+) -> impl Iterator<Item = (Vec3, Vec3)> + 'a {
     let mut next = 0;
-    to.ids.iter().zip(&to.positions).map(move |(id, &end)| {
-        while ids.get(next).is_some_and(|before| before < id) {
-            next += 1;
-        }
-        match positions.get(next) {
-            Some(start) if ids[next] == *id => start.lerp(end, share),
-            _ => end,
-        }
-    })
+    let ends = to.positions.iter().zip(&to.velocities);
+    to.ids
+        .iter()
+        .zip(ends)
+        .map(move |(id, (&place, &velocity))| {
+            let start = from.and_then(|from| {
+                while from.ids.get(next).is_some_and(|before| before < id) {
+                    next += 1;
+                }
+                from.ids.get(next).filter(|before| *before == id)?;
+                Some((*from.positions.get(next)?, *from.velocities.get(next)?))
+            });
+            start.map_or((place, velocity), |(from, before)| {
+                (from.lerp(place, share), before.lerp(velocity, share))
+            })
+        })
 }
 
 #[cfg(test)]
@@ -67,6 +75,7 @@ mod tests {
             id: 0,
             ids: ids.to_vec(),
             positions: ids.iter().map(|&id| vec3(x, id as f32, 0.0)).collect(),
+            velocities: vec![Vec3::X * x; ids.len()],
         }
     }
 
@@ -75,8 +84,11 @@ mod tests {
         let (from, to) = (frame(&[1, 2, 5, 6], 0.0), frame(&[2, 6, 7, 9], 4.0));
         let blended: Vec<_> = blend(Some(&from), &to, 0.25).collect();
         let expected = [(1.0, 2.0), (1.0, 6.0), (4.0, 7.0), (4.0, 9.0)];
-        assert_eq!(blended, expected.map(|(x, y)| vec3(x, y, 0.0)));
-        let alone: Vec<_> = blend(None, &to, 0.25).collect();
+        assert_eq!(
+            blended,
+            expected.map(|(x, y)| (vec3(x, y, 0.0), Vec3::X * x))
+        );
+        let alone: Vec<_> = blend(None, &to, 0.25).map(|(place, _)| place).collect();
         assert_eq!(alone, to.positions);
     }
 }

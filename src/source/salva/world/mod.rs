@@ -108,8 +108,11 @@ impl World {
             to.id = *id;
             to.ids.clone_from(&liquid.ids);
             to.positions.clear();
+            to.velocities.clear();
             if let Some(fluid) = self.liquid_world.fluids().get(liquid.handle) {
                 to.positions.extend(fluid.positions.iter().map(from_liquid));
+                to.velocities
+                    .extend(fluid.velocities.iter().map(from_liquid));
             }
         }
         frame.bodies.clear();
