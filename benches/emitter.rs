@@ -104,7 +104,6 @@ fn run(name: &str, scene: fn(&mut World, u32), count: usize, runs: usize) {
             PostUpdate,
             (
                 (|mut watch: ResMut<Watch>| watch.start = Some(Instant::now()))
-                    .after(TransformSystems::Propagate)
                     .before(FluidSystems::Emit),
                 (|mut watch: ResMut<Watch>| {
                     let elapsed = watch.start.map(|start| start.elapsed());

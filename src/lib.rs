@@ -125,6 +125,25 @@ pub use crate::{
     source::{emitter, particles, solid},
 };
 
+#[cfg(feature = "inspector")]
+#[doc(hidden)]
+pub use crate::inspector::FluidInspectorPlugin;
+/// Where these names stood before the modules had them; they go in the next version.
+#[doc(hidden)]
+pub use crate::{
+    diagnostics::FluidDiagnosticsPlugin,
+    emitter::{EmittedParticles, EmitterBounds, ExternalMotion, ParticleCollider, ParticleEmitter},
+    material::{FluidMaterial, Medium, Thickness},
+    particles::{FluidParticles, ShapedFluid},
+    rain::{Rain, RainPlugin},
+    render::LayerBlending,
+    settings::{
+        FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid, Search,
+        SettingRange, Smoothing, Window,
+    },
+    shape::SurfaceKernel,
+};
+
 /// What most programs name.
 pub mod prelude {
     #[cfg(feature = "recordings")]

@@ -56,15 +56,18 @@ impl FluidParticles {
     }
 
     /// The velocities, if there is one for each particle.
+    #[cfg(feature = "recordings")]
     pub(crate) fn whole_velocities(&self) -> &[Vec3] {
         self.whole(&self.velocities)
     }
 
     /// The ids, if there is one for each particle.
+    #[cfg(feature = "recordings")]
     pub(crate) fn whole_ids(&self) -> &[u32] {
         self.whole(&self.ids)
     }
 
+    #[cfg(feature = "recordings")]
     fn whole<'a, T>(&self, column: &'a [T]) -> &'a [T] {
         let is_whole = column.len() == self.positions.len();
         if is_whole { column } else { &[] }

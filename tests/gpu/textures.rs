@@ -51,7 +51,9 @@ fn many_small_surfaces_take_little_more_than_a_large_one() {
                 },
                 ..FluidMaterial::WATER
             };
-            world.spawn((fluid(&[at.extend(-3.0)], 0.25, BULK), material));
+            world
+                .spawn(fluid(&[at.extend(-3.0)], 0.25, BULK))
+                .insert(material);
         }
     });
     assert_eq!(surfaces(&app).len(), 16);
