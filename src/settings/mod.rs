@@ -11,7 +11,7 @@ mod tracing;
 
 use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass, prelude::*};
 
-#[cfg(test)]
+#[cfg(all(test, feature = "published"))]
 pub(crate) use self::check::for_each_number;
 #[doc(hidden)]
 pub use self::checked::Checked;
