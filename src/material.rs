@@ -7,7 +7,7 @@ use crate::settings::{Checked, SettingRange, Settings};
 
 /// The optical properties of a fluid.
 ///
-/// Fluids with equal materials in one view form one body: they merge on screen, unless a fluid of
+/// Fluids with equal materials in one view form one surface: they merge on screen, unless a fluid of
 /// another material lies between them.
 ///
 /// Values out of range are logged once and clamped.
@@ -35,7 +35,7 @@ pub struct FluidMaterial {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum Thickness {
-    /// From the front of the nearest particle to the back of the farthest, as if the body had no
+    /// From the front of the nearest particle to the back of the farthest, as if the liquid had no
     /// gaps. Cheap, and as smooth as the surface, but gaps between puffs count as filled.
     #[default]
     Layers,

@@ -26,7 +26,7 @@ pub enum FluidDebugView {
     /// Class of the first surface: bulk blue, spray orange.
     Classes,
     /// Straight path length through the liquid at each pixel. Black: 0; white: the depth of the
-    /// body's bounding box, or where the fluid is opaque.
+    /// surface's bounding box, or where the fluid is opaque.
     Thickness,
     /// Final direction of each ray in view space, −1..=1 shown as 0..=1; half as bright where the
     /// ray ends at an opaque surface or goes straight on.

@@ -13,9 +13,9 @@ pub enum Refractions {
     Zero,
     /// Only the first surface refracts; absorption is that of the straight ray.
     One,
-    /// Into one body and out of it.
+    /// Into the liquid and out of it.
     Two,
-    /// Into one body, out of it, into the other class (spray behind bulk, bulk behind spray) and
+    /// Into the liquid, out of it, into the other class (spray behind bulk, bulk behind spray) and
     /// out of that.
     #[default]
     Four,
