@@ -59,7 +59,7 @@ fn assert_recorded(name: &str, source: impl Bundle) {
     recording
         .add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
         .init_asset::<Shader>()
-        .add_plugins((FluidPlugin::default(), SalvaPlugin));
+        .add_plugins((FluidPlugin::default(), RecordingPlugin, SalvaPlugin));
     let mut salva = recording.world_mut().resource_mut::<SalvaSettings>();
     salva.mode = SalvaMode::Lockstep;
     stop_clock(&mut recording);
