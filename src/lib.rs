@@ -109,16 +109,12 @@ pub mod settings;
 pub mod shape;
 mod source;
 
+#[cfg(doc)]
+use crate::prelude::*;
 #[cfg(feature = "recordings")]
 pub use crate::source::recording;
 #[cfg(feature = "salva")]
 pub use crate::source::salva;
-#[cfg(doc)]
-use crate::{
-    diagnostics::FluidDiagnosticsPlugin,
-    prelude::*,
-    settings::{FluidDebugView, Fresnel, Refractions, Search},
-};
 pub use crate::{
     plugins::{FluidPlugin, FluidPlugins},
     schedule::FluidSystems,
