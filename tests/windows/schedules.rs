@@ -6,7 +6,6 @@ use std::collections::HashMap;
 use bevy::{
     ecs::{intern::Interned, schedule::ScheduleLabel},
     prelude::*,
-    render::RenderApp,
 };
 use bevy_fluid::{
     diagnostics::FluidDiagnosticsPlugin, inspector::FluidInspectorPlugin, prelude::*,
@@ -80,14 +79,4 @@ fn a_system_without_an_order_is_found() {
         app.add_systems(PostUpdate, loose);
     });
     assert!(ambiguities(app.world()).len() > 3);
-}
-
-#[test]
-#[ignore = "lists what the render world leaves open"]
-fn the_render_worlds_order() {
-    let mut app = app(|_| ());
-    let render = app.sub_app_mut(RenderApp);
-    for line in ambiguities(render.world()) {
-        println!("{line}");
-    }
 }
