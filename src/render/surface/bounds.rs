@@ -55,19 +55,24 @@ impl Bounds {
     }
 }
 
+/// Sorts few things in place; equal ones keep their order. The standard library's stable sort may
+/// allocate.
+pub(super) fn sort_few<T>(things: &mut [T], before: impl Fn(&T, &T) -> bool) {
+    for end in 1..things.len() {
+        let mut i = end;
+        while i > 0 && before(&things[i], &things[i - 1]) {
+            things.swap(i, i - 1);
+            i -= 1;
+        }
+    }
+}
+
 /// Sorts things by the order in which they are painted: each after all that its box may hide,
 /// judged by the boxes alone; where they overlap or hide each other in a ring, the farther centre
 /// first.
 pub(crate) fn sort_far_to_near<T>(things: &mut [T], bounds: impl Fn(&T) -> Bounds, eye: Vec3) {
     let distance = |thing: &T| bounds(thing).center().distance_squared(eye);
-    // Few things, nearly in order from the last frame.
-    for end in 1..things.len() {
-        let mut i = end;
-        while i > 0 && distance(&things[i]) > distance(&things[i - 1]) {
-            things.swap(i, i - 1);
-            i -= 1;
-        }
-    }
+    sort_few(things, |a, b| distance(a) > distance(b));
     for done in 0..things.len() {
         let left = &things[done..];
         let hides_none = |i: &usize| {

@@ -8,7 +8,10 @@ use core::ops::Range;
 
 use bevy::prelude::*;
 
-use super::{DrawnFluid, bounds::Bounds};
+use super::{
+    DrawnFluid,
+    bounds::{Bounds, sort_few},
+};
 use crate::material::FluidMaterial;
 
 /// A fluid in view.
@@ -62,14 +65,7 @@ pub(super) fn group(members: &mut [Member], groups: &mut Vec<Group>, eye: Vec3) 
             split(members, first);
         }
     }
-    // Stable, and members are few.
-    for end in 1..members.len() {
-        let mut i = end;
-        while i > 0 && members[i].group < members[i - 1].group {
-            members.swap(i, i - 1);
-            i -= 1;
-        }
-    }
+    sort_few(members, |a, b| a.group < b.group);
     groups.clear();
     for (i, member) in members.iter().enumerate() {
         match groups.last_mut() {
