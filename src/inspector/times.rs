@@ -30,6 +30,7 @@ const STALE: Duration = Duration::from_secs(3);
 const COLORS: [Color32; PASSES.len() + 1] = [
     Color32::from_rgb(150, 150, 150),
     Color32::from_rgb(66, 150, 250),
+    Color32::from_rgb(90, 110, 230),
     Color32::from_rgb(60, 200, 200),
     Color32::from_rgb(110, 200, 80),
     Color32::from_rgb(220, 200, 60),

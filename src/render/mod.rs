@@ -37,9 +37,10 @@ pub use self::{
 };
 
 /// Names of the passes' time spans, in the order of the passes.
-pub(crate) const SPANS: [&str; 7] = [
+pub(crate) const SPANS: [&str; 8] = [
     scene_depth::SPAN,
     splat::SPAN,
+    frame::tiles::SPAN,
     thickness::SPAN,
     smooth::SPAN,
     normals::SPAN,
@@ -93,7 +94,7 @@ impl Plugin for FluidRenderPlugin {
             (
                 (
                     scene_depth::scene_depth.in_set(FluidPasses::SceneDepth),
-                    (splat::splat, splat::overdraw, frame::tiles::mark_tiles)
+                    (splat::splat, frame::tiles::mark_tiles)
                         .chain()
                         .in_set(FluidPasses::Splat),
                     thickness::thickness.in_set(FluidPasses::Thickness),

@@ -1,5 +1,5 @@
 //! What happens where there is no device, or it goes away. What a device may lack is decided, and its
-//! absence forced, in `src/render/support.rs` and `tests/gpu/layers/equal.rs`: Bevy itself does not start
+//! absence forced, in `src/render/frame/support.rs` and `tests/gpu/layers/equal.rs`: Bevy itself does not start
 //! on devices that lack so much.
 
 use crate::common::*;

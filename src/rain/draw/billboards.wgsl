@@ -2,7 +2,7 @@
 
 #import bevy_fluid::rain::draw::common::{
     clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
-    scene_view_depth, streak_sampler, streaks, surroundings, uniform_of, view,
+    scene_view_depth, streak_sampler, streaks, surroundings, uniform_of,
 }
 #import bevy_fluid::rain::draw::types::{GpuRainLevel, STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
 

@@ -2,7 +2,7 @@
 
 #import bevy_fluid::render::frame::{frame, surface, view}
 #import bevy_fluid::render::functions::{
-    decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth, ndc_from_pixel,
+    decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth,
     pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
 }
 #import bevy_fluid::render::optics::environment

@@ -7,7 +7,6 @@ use bevy::{
     asset::embedded_asset,
     prelude::*,
     render::{
-        Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ViewDepthTexture, ViewTarget},
@@ -19,7 +18,7 @@ pub(super) use self::pipeline::CompositePipeline;
 pub(super) use self::pipeline::{CompositeKey, CompositePart};
 use self::scene::SceneColor;
 use super::{
-    frame::{Frame, FrameStartup, Gpu, Group, Input, Kept, Layers, Placeholder, add_stage, timed},
+    frame::{Frame, Kept, add_stage, timed},
     lighting::ViewLighting,
     surface::{Surface, ViewSurfaces},
 };
@@ -27,53 +26,13 @@ use super::{
 /// Name of the pass's time span.
 pub(crate) const SPAN: &str = "fluid_composite";
 
-/// What refraction has left on a surface.
-#[derive(Component, Default)]
-pub(super) struct Composite(Group);
-
 pub(super) fn plugin(app: &mut App) {
     embedded_asset!(app, "composite.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app
-        .add_systems(RenderStartup, pipeline::init_pipeline.after(FrameStartup))
-        .add_systems(
-            Render,
-            prepare_groups.in_set(RenderSystems::PrepareBindGroups),
-        );
-    add_stage::<CompositePipeline>(render_app);
-    let world = render_app.world_mut();
-    world.register_required_components::<Surface, Composite>();
-    scene::plugin(render_app);
+    add_stage::<CompositePipeline>(app);
+    scene::plugin(app);
 }
 
-fn prepare_groups(
-    mut surfaces: Query<(&Layers, &mut Composite)>,
-    pipeline: Res<CompositePipeline>,
-    placeholder: Res<Placeholder>,
-    gpu: Gpu,
-) {
-    for (layers, mut composite) in &mut surfaces {
-        let inputs = [
-            Input::texture(layers.radiance.as_ref()),
-            Input::texture(layers.transmission.as_ref()),
-            Input::texture(layers.exits.as_ref()),
-            Input::texture_or(&layers.bulk, &placeholder),
-            Input::texture_or(&layers.spray, &placeholder),
-        ];
-        composite
-            .0
-            .prepare(&gpu, "fluid_composite", &pipeline.layout, &inputs);
-    }
-}
-
-type Composited<'a> = (
-    &'a Surface,
-    &'a Frame,
-    &'a Composite,
-    &'a Kept<CompositePipeline>,
-);
+type Composited<'a> = (&'a Surface, &'a Frame, &'a Kept<CompositePipeline>);
 
 /// The pass: all surfaces of the view, each composited over the previous ones.
 pub(super) fn composite(
@@ -101,7 +60,7 @@ pub(super) fn composite(
         let mut changed = view.viewport;
         scene.keep(ctx, target, changed);
         for surface in surfaces() {
-            let Some(pipelines) = surface.3.drawn(surface.0) else {
+            let Some(pipeline) = surface.2.id(surface.0, |key| key.part.light()) else {
                 continue;
             };
             // Rays leave the surface's own rectangle, so all that has changed may be needed.
@@ -117,14 +76,13 @@ pub(super) fn composite(
                 ctx,
                 pass,
                 surface,
-                pipelines.light,
+                pipeline,
                 (lighting, scene, target),
                 &cache,
             );
         }
         for surface in surfaces() {
-            let pipelines = surface.3.drawn(surface.0);
-            if let Some(pipeline) = pipelines.and_then(|it| it.depth) {
+            if let Some(pipeline) = surface.2.id(surface.0, |key| !key.part.light()) {
                 let pass = RenderPassDescriptor {
                     label: Some("fluid_composite_depth"),
                     depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
@@ -146,14 +104,14 @@ pub(super) fn composite(
 fn paint(
     ctx: &mut RenderContext,
     pass: RenderPassDescriptor,
-    (_, frame, composite, _): Composited,
+    (_, frame, kept): Composited,
     pipeline: CachedRenderPipelineId,
     (lighting, scene, target): (&ViewLighting, &SceneColor, &ViewTarget),
     cache: &PipelineCache,
 ) {
     let (Some(pipeline), Some(group), Some((light, light_offset)), Some(scene)) = (
         cache.get_render_pipeline(pipeline),
-        composite.0.get(),
+        kept.state.get(),
         lighting.get(),
         scene.group(target),
     ) else {

@@ -2,23 +2,23 @@
 
 use bevy::{
     asset::load_embedded_asset,
-    core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
     prelude::*,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId, CompareFunction,
-        DepthStencilState, MultisampleState, RenderPipelineDescriptor, SamplerBindingType,
-        ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+        BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, MultisampleState,
+        RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
+        TextureFormat, TextureSampleType,
         binding_types::{sampler, texture_2d},
     },
 };
 
+use super::SPAN;
 use crate::render::{
     frame::{
-        FrameLayout, Stage,
-        pipelines::{Tiles, defs, fragment, tile_pipeline, unfiltered},
+        FrameLayout, Group, Input, Inputs, Layers, NoUniform, Stage,
+        pipelines::{Tiles, defs, depth_state, fragment, tile_pipeline, unfiltered},
     },
     lighting::LightingLayout,
-    surface::Variant,
+    surface::{Surface, Variant},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -50,7 +50,7 @@ impl CompositePart {
         self != Self::Light
     }
 
-    fn light(self) -> bool {
+    pub(super) fn light(self) -> bool {
         matches!(self, Self::Whole | Self::Light)
     }
 }
@@ -59,48 +59,45 @@ impl CompositePart {
 pub(crate) struct CompositePipeline {
     frame: FrameLayout,
     lighting: BindGroupLayoutDescriptor,
-    pub(super) layout: BindGroupLayoutDescriptor,
+    layout: BindGroupLayoutDescriptor,
     /// The scene's colour as it is, and as it was before any surface.
     pub(super) scene: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
 
-pub(super) fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    lighting: Res<LightingLayout>,
-) {
-    let filtered = || texture_2d(TextureSampleType::Float { filterable: true });
-    commands.insert_resource(CompositePipeline {
-        frame: frame.clone(),
-        lighting: lighting.0.clone(),
-        layout: BindGroupLayoutDescriptor::new(
-            "fluid_composite_layout",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    unfiltered(),
-                    unfiltered(),
-                    texture_2d(TextureSampleType::Uint),
-                    unfiltered(),
-                    unfiltered(),
+impl FromWorld for CompositePipeline {
+    fn from_world(world: &mut World) -> Self {
+        let filtered = || texture_2d(TextureSampleType::Float { filterable: true });
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            lighting: world.resource::<LightingLayout>().0.clone(),
+            layout: BindGroupLayoutDescriptor::new(
+                "fluid_composite_layout",
+                &BindGroupLayoutEntries::sequential(
+                    ShaderStages::FRAGMENT,
+                    (
+                        unfiltered(),
+                        unfiltered(),
+                        texture_2d(TextureSampleType::Uint),
+                        unfiltered(),
+                        unfiltered(),
+                    ),
                 ),
             ),
-        ),
-        scene: BindGroupLayoutDescriptor::new(
-            "fluid_scene_color_layout",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    filtered(),
-                    filtered(),
-                    sampler(SamplerBindingType::Filtering),
+            scene: BindGroupLayoutDescriptor::new(
+                "fluid_scene_color_layout",
+                &BindGroupLayoutEntries::sequential(
+                    ShaderStages::FRAGMENT,
+                    (
+                        filtered(),
+                        filtered(),
+                        sampler(SamplerBindingType::Filtering),
+                    ),
                 ),
             ),
-        ),
-        shader: load_embedded_asset!(assets.as_ref(), "composite.wgsl"),
-    });
+            shader: load_embedded_asset!(world, "composite.wgsl"),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for CompositePipeline {
@@ -115,14 +112,8 @@ impl SpecializedRenderPipeline for CompositePipeline {
         let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
         let layouts = [&self.layout, &self.lighting, &self.scene].map(Clone::clone);
         RenderPipelineDescriptor {
-            depth_stencil: Some(DepthStencilState {
-                format: CORE_3D_DEPTH_FORMAT,
-                // Transparent objects and later passes are depth-tested against the liquid.
-                depth_write_enabled: Some(key.part.depth()),
-                depth_compare: Some(CompareFunction::GreaterEqual),
-                stencil: default(),
-                bias: default(),
-            }),
+            // Transparent objects and later passes are depth-tested against the liquid.
+            depth_stencil: depth_state(key.part.depth(), CompareFunction::GreaterEqual),
             multisample: MultisampleState {
                 count: key.samples,
                 ..default()
@@ -138,42 +129,33 @@ impl SpecializedRenderPipeline for CompositePipeline {
     }
 }
 
-/// The pipelines of a surface.
-pub(crate) struct CompositePipelines {
-    pub(super) light: CachedRenderPipelineId,
-    /// Where light and depth are written separately.
-    pub(super) depth: Option<CachedRenderPipelineId>,
-}
-
 impl Stage for CompositePipeline {
-    type Pipelines = CompositePipelines;
+    type Uniform = NoUniform;
+    type State = Group;
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(CompositeKey) -> CachedRenderPipelineId,
-    ) -> CompositePipelines {
-        let plan = &variant.plan;
-        let mut part = |part| {
-            request(CompositeKey {
-                format: variant.format,
-                samples: variant.samples,
-                part,
-                several: variant.several,
-            })
+    fn keys(&self, variant: &Variant) -> Vec<CompositeKey> {
+        let parts: &[_] = match (variant.plan.index_one, variant.several) {
+            (true, _) => &[CompositePart::Light, CompositePart::DenseDepth],
+            (false, true) => &[CompositePart::Light, CompositePart::Depth],
+            (false, false) => &[CompositePart::Whole],
         };
-        let (light, depth) = match (plan.index_one, variant.several) {
-            (true, _) => (CompositePart::Light, Some(CompositePart::DenseDepth)),
-            (false, true) => (CompositePart::Light, Some(CompositePart::Depth)),
-            (false, false) => (CompositePart::Whole, None),
+        let key = |&part| CompositeKey {
+            format: variant.format,
+            samples: variant.samples,
+            part,
+            several: variant.several,
         };
-        CompositePipelines {
-            light: part(light),
-            depth: depth.map(part),
-        }
+        parts.iter().map(key).collect()
     }
 
-    fn ids(pipelines: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        [pipelines.light].into_iter().chain(pipelines.depth)
+    fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
+        let refracted = [
+            Input::texture(layers.radiance.as_ref()),
+            Input::texture(layers.transmission.as_ref()),
+            Input::texture(layers.exits.as_ref()),
+            inputs.or_nothing(&layers.bulk),
+            inputs.or_nothing(&layers.spray),
+        ];
+        group.prepare(inputs.gpu, SPAN, &self.layout, &refracted);
     }
 }

@@ -2,11 +2,10 @@
 //! the one of the view's two main textures that post-processing will write to later.
 
 use bevy::{
-    app::SubApp,
     core_pipeline::blit::{BlitPipeline, BlitPipelineKey},
     prelude::*,
     render::{
-        Render, RenderSystems,
+        Render, RenderApp, RenderSystems,
         render_resource::{
             BindGroup, CachedRenderPipelineId, Extent3d, LoadOp, Operations, PipelineCache,
             RenderPassColorAttachment, RenderPassDescriptor, SpecializedRenderPipelines, StoreOp,
@@ -42,7 +41,10 @@ struct Side {
     scene: Group,
 }
 
-pub(super) fn plugin(render_app: &mut SubApp) {
+pub(super) fn plugin(app: &mut App) {
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
     render_app.add_systems(
         Render,
         (
@@ -96,11 +98,7 @@ fn prepare(
         );
         let (this, other) = (target.main_texture_view(), target.main_texture_other_view());
         let SceneColor { before, sides, .. } = &mut *scene;
-        for (side, written, copy) in sides
-            .iter_mut()
-            .zip([(this, other), (other, this)])
-            .map(|(side, (written, copy))| (side, written, copy))
-        {
+        for (side, (written, copy)) in sides.iter_mut().zip([(this, other), (other, this)]) {
             side.written = Some(written.id());
             side.source.prepare(
                 &gpu,

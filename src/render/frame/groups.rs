@@ -13,7 +13,7 @@ use bevy::{
     },
 };
 
-use super::{Placeholder, Target, TextureMemory};
+use super::{Target, TextureMemory};
 
 /// What it takes to make things on the GPU.
 #[derive(SystemParam)]
@@ -33,6 +33,7 @@ enum InputId {
 }
 
 /// An input of a bind group; one that is missing makes for no group.
+#[derive(Clone)]
 pub(crate) struct Input<'a>(InputId, Option<BindingResource<'a>>);
 
 impl<'a> Input<'a> {
@@ -45,11 +46,6 @@ impl<'a> Input<'a> {
 
     pub(crate) fn texture(target: Option<&'a Target>) -> Self {
         target.map_or(Self::MISSING, |target| Self::view(&target.view))
-    }
-
-    /// A texture, or "nothing here" where the surface lacks it.
-    pub(crate) fn texture_or(target: &'a Option<Target>, placeholder: &'a Placeholder) -> Self {
-        Self::view(&target.as_ref().unwrap_or(&placeholder.0).view)
     }
 
     pub(crate) fn sampler(sampler: &'a Sampler) -> Self {

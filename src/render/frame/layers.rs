@@ -9,10 +9,9 @@ use super::{
     Gpu, Target,
     support::{FluidSupport, LAYER_FORMAT},
     targets::ensure,
-    tiles::{TILE, TILE_FORMAT},
 };
 use crate::{
-    render::surface::{Surface, Variant},
+    render::surface::{MARGIN, Surface, Variant},
     settings::FluidDebugView,
 };
 
@@ -26,14 +25,16 @@ pub(crate) const TRANSMISSION_FORMAT: TextureFormat = TextureFormat::Rg16Float;
 /// their slopes along x between the two halves of a separable fit, as bits of f32.
 pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
-/// Texels on each side that are never drawn to, so that all that reads beyond finds nothing.
-const MARGIN: i32 = 2;
+/// Edge of a tile. Unit: pixels.
+pub(super) const TILE: u32 = 16;
+/// 1 where there is (bulk, spray).
+pub(super) const TILE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
 
 /// The textures of a surface, which hold the part of the view that it may cover.
 ///
 /// Layers hold (device depth of the front, −device depth of the back); (0, −2) means nothing. A
-/// front of exactly 1 means that the ray starts inside the liquid. A second record of exit rays, or
-/// the coverage of pixels, would be one more texture here.
+/// front of exactly 1 means that the ray starts inside the liquid.
+// A second record of exit rays, or the coverage of pixels, would be one more texture here.
 #[derive(Component, Default)]
 pub struct Layers {
     size: UVec2,
@@ -57,7 +58,7 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// Of all textures. Unit: pixels.
+    /// The size of the textures. Unit: pixels.
     pub fn size(&self) -> UVec2 {
         self.size
     }
@@ -118,6 +119,11 @@ impl Layers {
         self.tiles.as_ref()
     }
 
+    /// Along both axes.
+    pub(super) fn tile_count(&self) -> UVec2 {
+        (self.size + TILE - 1) / TILE
+    }
+
     /// The bulk's layers as they are splatted.
     pub(crate) fn splatted(&self) -> &Option<Target> {
         if self.splatted_to_scratch {
@@ -129,10 +135,10 @@ impl Layers {
 
     /// Moves the textures over a rectangle of the view. They are made anew if they are too small,
     /// or more than twice as large as needed.
-    fn place(&mut self, rect: URect) {
-        self.origin = rect.min.as_ivec2() - MARGIN;
-        let needed = rect.size() + 2 * MARGIN as u32;
-        let rounded = (needed + TILE - 1) / TILE * TILE;
+    fn place(&mut self, rect: URect, largest: u32) {
+        self.origin = rect.min.as_ivec2() - MARGIN as i32;
+        let needed = rect.size() + 2 * MARGIN;
+        let rounded = ((needed + TILE - 1) / TILE * TILE).min(UVec2::splat(largest));
         let area = |size: UVec2| u64::from(size.x) * u64::from(size.y);
         if needed.cmpgt(self.size).any() || area(self.size) > 2 * area(rounded) {
             self.size = rounded;
@@ -144,73 +150,45 @@ impl Layers {
         let passes = plan.smoothing.layer_passes();
         self.splatted_to_scratch = passes % 2 == 1;
         let size = self.size;
-        let normals = !plan.accumulated;
+        let normals = !plan.index_one;
         let sum = support.thickness_format;
         let counted = variant.debug_view == Some(FluidDebugView::Overdraw);
-        let tiles = size / TILE;
-        for (target, wanted, label, size, format) in [
-            (&mut self.tiles, true, "fluid_tiles", tiles, TILE_FORMAT),
-            (
-                &mut self.bulk,
-                plan.bulk,
-                "fluid_bulk_layers",
-                size,
-                LAYER_FORMAT,
-            ),
-            (
-                &mut self.scratch,
-                passes > 0,
-                "fluid_bulk_layers_scratch",
-                size,
-                LAYER_FORMAT,
-            ),
-            (
-                &mut self.bulk_normals,
-                plan.bulk && normals,
-                "fluid_bulk_normals",
-                size,
-                NORMAL_FORMAT,
-            ),
-            (
-                &mut self.spray,
-                plan.spray,
-                "fluid_spray_layers",
-                size,
-                LAYER_FORMAT,
-            ),
-            (
-                &mut self.spray_normals,
-                plan.spray && normals,
-                "fluid_spray_normals",
-                size,
-                NORMAL_FORMAT,
-            ),
-            (
-                &mut self.radiance,
-                true,
-                "fluid_radiance",
-                size,
-                RADIANCE_FORMAT,
-            ),
-            (
-                &mut self.transmission,
-                true,
-                "fluid_transmission",
-                size,
-                TRANSMISSION_FORMAT,
-            ),
-            (&mut self.exits, true, "fluid_exits", size, EXIT_FORMAT),
-            (
-                &mut self.thickness,
-                plan.accumulated,
-                "fluid_thickness",
-                size,
-                sum,
-            ),
-            (&mut self.overdraw, counted, "fluid_overdraw", size, sum),
-        ] {
+        let keep = |target: &mut Option<Target>, wanted, label, format| {
             ensure(target, wanted, gpu, label, size, format);
-        }
+        };
+        keep(&mut self.bulk, plan.bulk, "fluid_bulk_layers", LAYER_FORMAT);
+        let label = "fluid_bulk_layers_scratch";
+        keep(&mut self.scratch, passes > 0, label, LAYER_FORMAT);
+        let (wanted, label) = (plan.bulk && normals, "fluid_bulk_normals");
+        keep(&mut self.bulk_normals, wanted, label, NORMAL_FORMAT);
+        keep(
+            &mut self.spray,
+            plan.spray,
+            "fluid_spray_layers",
+            LAYER_FORMAT,
+        );
+        let (wanted, label) = (plan.spray && normals, "fluid_spray_normals");
+        keep(&mut self.spray_normals, wanted, label, NORMAL_FORMAT);
+        keep(&mut self.radiance, true, "fluid_radiance", RADIANCE_FORMAT);
+        let label = "fluid_transmission";
+        keep(&mut self.transmission, true, label, TRANSMISSION_FORMAT);
+        keep(&mut self.exits, true, "fluid_exits", EXIT_FORMAT);
+        keep(
+            &mut self.thickness,
+            plan.accumulated,
+            "fluid_thickness",
+            sum,
+        );
+        keep(&mut self.overdraw, counted, "fluid_overdraw", sum);
+        let tiles = self.tile_count();
+        ensure(
+            &mut self.tiles,
+            true,
+            gpu,
+            "fluid_tiles",
+            tiles,
+            TILE_FORMAT,
+        );
     }
 }
 
@@ -221,7 +199,7 @@ pub(super) fn prepare_layers(
 ) {
     for (surface, mut layers) in &mut surfaces {
         if let Some(variant) = &surface.drawn {
-            layers.place(surface.rect);
+            layers.place(surface.rect, gpu.device.limits().max_texture_dimension_2d);
             layers.prepare(&gpu, &support, variant);
         }
     }

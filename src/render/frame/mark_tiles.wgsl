@@ -5,7 +5,7 @@
 @group(0) @binding(0) var bulk_layers: texture_2d<f32>;
 @group(0) @binding(1) var spray_layers: texture_2d<f32>;
 
-const TILE: i32 = 16;
+const TILE = #{TILE};
 
 fn is_layer(layers: vec2<f32>) -> bool {
     return layers.x > NO_FRONT || layers.y > NO_BACK;

@@ -20,8 +20,8 @@ use bevy::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{
             AddressMode, BindGroupLayoutDescriptor, BindGroupLayoutEntries, FilterMode, Sampler,
-            SamplerDescriptor, ShaderStages, ShaderType, TextureFormat, TextureSampleType,
-            binding_types::{texture_2d, uniform_buffer},
+            SamplerDescriptor, ShaderStages, ShaderType, TextureFormat,
+            binding_types::uniform_buffer,
         },
         renderer::RenderDevice,
         view::{ViewUniform, ViewUniformOffset, ViewUniforms},
@@ -33,7 +33,7 @@ pub(crate) use self::{
     groups::{Gpu, Group, Input},
     layers::{EXIT_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT, TRANSMISSION_FORMAT},
     pass::{Frame, cleared},
-    stage::{Kept, Stage, add_stage, timed},
+    stage::{Inputs, Kept, NoUniform, Stage, add_stage, timed},
     targets::{Placeholder, Target, ensure},
     uniforms::{Offset, UniformArray},
 };
@@ -77,7 +77,6 @@ pub(crate) fn plugin(app: &mut App, blending: support::LayerBlending) {
     load_shader_library!(app, "slopes.wgsl");
     load_shader_library!(app, "ellipsoid.wgsl");
     embedded_asset!(app, "tiles.wgsl");
-    embedded_asset!(app, "mark_tiles.wgsl");
     embedded_asset!(app, "splat_normals.wgsl");
     let memory = TextureMemory::default();
     app.insert_resource(memory.clone());
@@ -108,7 +107,6 @@ pub(crate) fn plugin(app: &mut App, blending: support::LayerBlending) {
             ),
         );
     splats::plugin(render_app);
-    tiles::plugin(render_app);
     render_app
         .world_mut()
         .register_required_components::<Surface, Layers>();
@@ -118,6 +116,7 @@ pub(crate) fn plugin(app: &mut App, blending: support::LayerBlending) {
     render_app
         .world_mut()
         .register_required_components::<ViewSurfaces, SceneDepth>();
+    tiles::plugin(app);
 }
 
 /// What stages need when they make their layouts.
@@ -125,7 +124,6 @@ pub(crate) fn plugin(app: &mut App, blending: support::LayerBlending) {
 pub(crate) struct FrameStartup;
 
 fn init_layout(mut commands: Commands, assets: Res<AssetServer>, device: Res<RenderDevice>) {
-    let unfiltered = || texture_2d(TextureSampleType::Float { filterable: false });
     commands.insert_resource(FrameLayout {
         layout: BindGroupLayoutDescriptor::new(
             "fluid_frame_layout",
@@ -135,8 +133,8 @@ fn init_layout(mut commands: Commands, assets: Res<AssetServer>, device: Res<Ren
                     uniform_buffer::<ViewUniform>(true),
                     uniform_buffer::<GpuFrame>(true),
                     uniform_buffer::<GpuSurface>(true),
-                    unfiltered(),
-                    unfiltered(),
+                    pipelines::unfiltered(),
+                    pipelines::unfiltered(),
                 ),
             ),
         ),

@@ -12,7 +12,7 @@ use bevy::{
     },
 };
 
-use super::{Group, Layers, Target, tiles::TILE};
+use super::{Group, Layers, Target};
 use crate::render::surface::{Surface, ViewSurfaces};
 
 /// A surface's place on screen, for its passes.
@@ -42,11 +42,11 @@ impl Frame {
         let min = view.viewport.min + surface.rect.min;
         self.camera_rect = URect::from_corners(min, min + surface.rect.size());
         self.viewport = view.viewport;
-        self.tiles = (layers.size() / TILE).element_product();
+        self.tiles = layers.tile_count().element_product();
     }
 
     /// The dynamic offset of its [`GpuFrame`](super::GpuFrame).
-    pub(crate) fn screen(&self) -> u32 {
+    pub(crate) fn frame_offset(&self) -> u32 {
         self.offsets[1]
     }
 

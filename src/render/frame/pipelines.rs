@@ -1,17 +1,19 @@
 //! What the descriptors of pipelines have in common.
 
 use bevy::{
+    core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
     prelude::*,
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, BlendComponent, BlendFactor,
-        BlendOperation, BlendState, ColorTargetState, ColorWrites, FragmentState, FrontFace,
-        PolygonMode, PrimitiveState, PrimitiveTopology, RenderPipelineDescriptor, ShaderStages,
-        TextureFormat, TextureSampleType, VertexState, binding_types::texture_2d,
+        BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
+        DepthStencilState, FragmentState, FrontFace, PolygonMode, PrimitiveState,
+        PrimitiveTopology, RenderPipelineDescriptor, ShaderStages, TextureFormat,
+        TextureSampleType, VertexState, binding_types::texture_2d,
     },
     shader::ShaderDefVal,
 };
 
-use super::FrameLayout;
+use super::{FrameLayout, layers::TILE};
 
 /// The tiles that a pass covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,19 +36,21 @@ pub(crate) fn tile_pipeline(
     tiles: Tiles,
     fragment: FragmentState,
 ) -> RenderPipelineDescriptor {
+    let mut shader_defs = defs([
+        ("BULK_TILES", tiles == Tiles::Bulk),
+        ("ALL_TILES", tiles == Tiles::AllInCamera),
+        (
+            "TO_CAMERA",
+            matches!(tiles, Tiles::LiquidInCamera | Tiles::AllInCamera),
+        ),
+    ]);
+    shader_defs.push(tile_size());
     RenderPipelineDescriptor {
         label: Some(label.into()),
         layout: [frame.layout.clone()].into_iter().chain(layouts).collect(),
         vertex: VertexState {
             shader: frame.tiles.clone(),
-            shader_defs: defs([
-                ("BULK_TILES", tiles == Tiles::Bulk),
-                ("ALL_TILES", tiles == Tiles::AllInCamera),
-                (
-                    "TO_CAMERA",
-                    matches!(tiles, Tiles::LiquidInCamera | Tiles::AllInCamera),
-                ),
-            ]),
+            shader_defs,
             entry_point: Some("vertex".into()),
             buffers: vec![],
         },
@@ -54,6 +58,17 @@ pub(crate) fn tile_pipeline(
         fragment: Some(fragment),
         ..default()
     }
+}
+
+/// The state for a depth attachment of [`CORE_3D_DEPTH_FORMAT`], such as the camera's.
+pub(crate) fn depth_state(write: bool, compare: CompareFunction) -> Option<DepthStencilState> {
+    Some(DepthStencilState {
+        format: CORE_3D_DEPTH_FORMAT,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: default(),
+        bias: default(),
+    })
 }
 
 /// Quads of four corners, one instance per splat or tile.
@@ -78,6 +93,11 @@ pub(crate) fn one_texture_layout(label: &'static str) -> BindGroupLayoutDescript
         label,
         &BindGroupLayoutEntries::single(ShaderStages::FRAGMENT, unfiltered()),
     )
+}
+
+/// The edge of a tile, for shaders.
+pub(super) fn tile_size() -> ShaderDefVal {
+    ShaderDefVal::Int("TILE".into(), TILE as i32)
 }
 
 /// Names a shader variant's conditions.

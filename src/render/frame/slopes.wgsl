@@ -4,7 +4,7 @@
 #import bevy_fluid::render::functions::{has_back, has_front, texel_at}
 
 #ifdef FROM_SLOPES
-// Bits of f32: see `SLOPE_FORMAT`.
+// Bits of f32: see `EXIT_FORMAT`.
 @group(1) @binding(0) var layers: texture_2d<u32>;
 #else
 @group(1) @binding(0) var layers: texture_2d<f32>;

@@ -9,9 +9,10 @@ use bevy::{
         GpuResourceAppExt, Render, RenderStartup, RenderSystems,
         render_phase::TrackedRenderPass,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer, BufferDescriptor,
+            BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer, BufferDescriptor,
             BufferUsages, CachedRenderPipelineId, FragmentState, PipelineCache,
-            RenderPipelineDescriptor, ShaderStages, VertexState,
+            RenderPassColorAttachment, RenderPassDepthStencilAttachment, RenderPipelineDescriptor,
+            ShaderStages, VertexState,
             binding_types::{storage_buffer_read_only_sized, uniform_buffer},
         },
         renderer::{RenderContext, RenderDevice},
@@ -26,7 +27,7 @@ use super::{
     support::FluidSupport,
 };
 use crate::{
-    render::surface::{GpuFluid, Surface, fluids::ExtractedFluid, plan::Plan},
+    render::surface::{GpuFluid, Surface, SurfaceSystems, fluids::ExtractedFluid, plan::Plan},
     shape::Splat,
 };
 
@@ -60,15 +61,21 @@ pub(super) fn plugin(render_app: &mut SubApp) {
         .add_systems(
             Render,
             (
+                // Plans count the splats that are there.
                 (upload_splats, prepare_transforms)
                     .chain()
-                    .in_set(RenderSystems::PrepareResources),
+                    .in_set(RenderSystems::PrepareResources)
+                    .before(SurfaceSystems::Plan),
                 prepare_groups.in_set(RenderSystems::PrepareBindGroups),
             ),
         );
-    render_app
-        .world_mut()
-        .register_required_components::<ExtractedFluid, GpuSplats>();
+    let world = render_app.world_mut();
+    world.register_required_components::<ExtractedFluid, GpuSplats>();
+    world.add_observer(
+        |removed: On<Remove, ExtractedFluid>, mut commands: Commands| {
+            commands.entity(removed.entity).try_remove::<GpuSplats>();
+        },
+    );
 }
 
 fn init_layouts(mut commands: Commands, assets: Res<AssetServer>) {
@@ -182,7 +189,7 @@ fn prepare_groups(
     }
 }
 
-/// Which splats are drawn: they lie in the order bulk, interior, spray.
+/// Which splats are drawn; `All` includes the interior.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
     Bulk,
@@ -199,7 +206,7 @@ pub(crate) struct Splats<'w, 's> {
 
 impl Splats<'_, '_> {
     /// Draws the splats of one class of all of a surface's fluids.
-    pub(crate) fn draw<'a>(
+    fn draw<'a>(
         &'a self,
         pass: &mut TrackedRenderPass<'a>,
         surface: &Surface,
@@ -227,51 +234,75 @@ impl Splats<'_, '_> {
         }
     }
 
-    /// A pass that sums up a value over splats.
-    pub(crate) fn sum(
+    /// A pass over the splats of some classes of a surface; none without an attachment.
+    pub(crate) fn record(
         &self,
         ctx: &mut RenderContext,
-        label: &'static str,
         (surface, frame): (&Surface, &Frame),
-        target: &Option<Target>,
-        pipeline: CachedRenderPipelineId,
+        pass: SplatPass,
         classes: &[Class],
     ) {
-        let (Some(plan), Some(target), Some(pipeline)) = (
-            surface.plan(),
-            target,
-            self.cache.get_render_pipeline(pipeline),
-        ) else {
+        let SplatPass { color, depth, .. } = pass;
+        let pipeline = pass
+            .pipeline
+            .and_then(|id| self.cache.get_render_pipeline(id));
+        let (Some(plan), Some(pipeline)) = (surface.plan(), pipeline) else {
             return;
         };
-        let mut pass = frame.begin(ctx, label, &[cleared(target, [0.0; 4])], None, pipeline);
+        if color.is_none() && depth.is_none() {
+            return;
+        }
+        let colors = [color];
+        let colors = &colors[usize::from(colors[0].is_none())..];
+        let mut recorded = frame.begin(ctx, pass.label, colors, depth, pipeline);
+        if let Some(finished) = pass.finished {
+            recorded.set_bind_group(2, finished, &[]);
+        }
         for &class in classes {
-            self.draw(&mut pass, surface, plan, class);
+            self.draw(&mut recorded, surface, plan, class);
+        }
+    }
+}
+
+/// A pass over splats.
+#[derive(Default)]
+pub(crate) struct SplatPass<'a> {
+    pub(crate) label: &'static str,
+    pub(crate) pipeline: Option<CachedRenderPipelineId>,
+    pub(crate) color: Option<RenderPassColorAttachment<'a>>,
+    pub(crate) depth: Option<RenderPassDepthStencilAttachment<'a>>,
+    /// Group 2: finished layers that splats are compared with.
+    pub(crate) finished: Option<&'a BindGroup>,
+}
+
+impl<'a> SplatPass<'a> {
+    /// Sums up a value over splats.
+    pub(crate) fn sum(
+        label: &'static str,
+        target: &'a Option<Target>,
+        pipeline: Option<CachedRenderPipelineId>,
+    ) -> Self {
+        Self {
+            label,
+            pipeline,
+            color: target.as_ref().and_then(|it| cleared(it, [0.0; 4])),
+            ..default()
         }
     }
 
-    /// Normals of the ellipsoids that made the finished layers of a class: its splats once more.
+    /// Normals of the ellipsoids that made finished layers.
     pub(crate) fn normals(
-        &self,
-        ctx: &mut RenderContext,
-        (surface, frame): (&Surface, &Frame),
-        finished: &Group,
-        target: &Option<Target>,
+        finished: &'a BindGroup,
+        target: &'a Option<Target>,
         pipeline: CachedRenderPipelineId,
-        class: Class,
-    ) {
-        let (Some(plan), Some(target), Some(finished), Some(pipeline)) = (
-            surface.plan(),
-            target,
-            finished.get(),
-            self.cache.get_render_pipeline(pipeline),
-        ) else {
-            return;
-        };
-        let targets = [cleared(target, [-2.0; 4])];
-        let mut pass = frame.begin(ctx, "fluid_splat_normals", &targets, None, pipeline);
-        pass.set_bind_group(2, finished, &[]);
-        self.draw(&mut pass, surface, plan, class);
+    ) -> Self {
+        Self {
+            label: "fluid_splat_normals",
+            pipeline: Some(pipeline),
+            color: target.as_ref().and_then(|it| cleared(it, [-2.0; 4])),
+            finished: Some(finished),
+            ..default()
+        }
     }
 }
 
@@ -302,7 +333,7 @@ pub(crate) fn splat_pipeline(
     }
 }
 
-/// The pipeline of [`Splats::normals`].
+/// The pipeline of [`SplatPass::normals`].
 pub(crate) fn normals_pipeline(
     frame: &FrameLayout,
     splats: &SplatLayouts,

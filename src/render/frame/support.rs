@@ -5,7 +5,7 @@ use bevy::{
     render::{
         render_resource::{TextureFormat, TextureFormatFeatureFlags, TextureUsages, WgpuFeatures},
         renderer::{RenderAdapter, RenderAdapterInfo, RenderDevice},
-        settings::WgpuLimits,
+        settings::{Backends, WgpuLimits},
     },
 };
 
@@ -60,7 +60,7 @@ pub(crate) fn init_support(
         );
     }
     // OpenGL reports it without checking.
-    let trusted = format!("{:?}", info.backend) != "Gl";
+    let trusted = Backends::from(info.backend) != Backends::GL;
     let can_blend_in = |format| {
         let own = adapter.get_texture_format_features(format).flags;
         trusted && can_blend(device.features(), own)

@@ -16,7 +16,7 @@ use bevy::{
     },
 };
 
-use super::{Gpu, support::LAYER_FORMAT};
+use super::{Gpu, pipelines::NO_LAYERS, support::LAYER_FORMAT};
 
 /// The memory of all textures that passes of fluids draw to, of all cameras.
 #[derive(Resource, Clone, Debug, Default)]
@@ -116,7 +116,6 @@ pub(super) fn init_placeholder(
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
 ) {
-    let nothing = [0.0f32, -2.0];
     let texture = device.create_texture_with_data(
         &queue,
         &TextureDescriptor {
@@ -130,7 +129,7 @@ pub(super) fn init_placeholder(
             view_formats: &[],
         },
         TextureDataOrder::default(),
-        bytemuck::cast_slice(&nothing),
+        bytemuck::cast_slice(&NO_LAYERS[..2]),
     );
     commands.insert_resource(Placeholder(Target {
         view: texture.create_view(&TextureViewDescriptor::default()),

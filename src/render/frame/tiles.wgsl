@@ -4,8 +4,7 @@
 #import bevy_fluid::render::frame::{frame, tiles}
 #import bevy_fluid::render::functions::{ndc_from_pixel, ndc_in_textures}
 
-// Twin of `TILE` in `tiles.rs`.
-const TILE: u32 = 16u;
+const TILE = u32(#{TILE});
 
 @vertex
 fn vertex(

@@ -49,7 +49,8 @@ impl<T: ShaderType + WriteInto + Copy + PartialEq> UniformArray<T> {
     }
 
     pub(crate) fn write(&mut self, gpu: &Gpu) {
-        if self.values == self.written && self.buffer.buffer().is_some() {
+        let written = self.values.is_empty() || self.buffer.buffer().is_some();
+        if self.values == self.written && written {
             return;
         }
         self.written.clone_from(&self.values);

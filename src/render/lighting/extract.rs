@@ -12,9 +12,9 @@ use crate::settings::ScreenSpaceFluid;
 /// A cubemap of the distant surroundings.
 #[derive(Clone)]
 pub(super) struct EnvironmentMap {
-    pub(super) image: Handle<Image>,
+    pub(super) image: AssetId<Image>,
     /// The diffuse light by the normal of a matte surface.
-    pub(super) diffuse: Option<Handle<Image>>,
+    pub(super) diffuse: Option<AssetId<Image>>,
     /// cd/m² per texel value.
     pub(super) intensity: f32,
     pub(super) rotation: Quat,
@@ -46,15 +46,15 @@ pub(super) fn extract_surroundings(
     for (entity, light, skybox, ambient) in &cameras {
         let map = light
             .map(|light| EnvironmentMap {
-                image: light.specular_map.clone(),
-                diffuse: Some(light.diffuse_map.clone()),
+                image: light.specular_map.id(),
+                diffuse: Some(light.diffuse_map.id()),
                 intensity: light.intensity,
                 rotation: light.rotation,
             })
             .or_else(|| {
                 let skybox = skybox?;
                 Some(EnvironmentMap {
-                    image: skybox.image.clone()?,
+                    image: skybox.image.as_ref()?.id(),
                     // Like meshes, the medium is not lit by the sky box.
                     diffuse: None,
                     intensity: skybox.brightness,

@@ -134,8 +134,7 @@ fn prepare_lighting(
         };
         lighting.cubemaps = default();
         if let Some(map) = surroundings.and_then(|it| it.map.as_ref()) {
-            let diffuse = map.diffuse.as_ref().map(Handle::id);
-            lighting.cubemaps = [Some(map.image.id()), diffuse].map(|id| id.filter(is_cubemap));
+            lighting.cubemaps = [Some(map.image), map.diffuse].map(|id| id.filter(is_cubemap));
             // Cubemaps are left-handed.
             light.environment_from_world =
                 Mat3::from_diagonal(vec3(1.0, 1.0, -1.0)) * Mat3::from_quat(map.rotation.inverse());

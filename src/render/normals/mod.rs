@@ -4,10 +4,8 @@ use bevy::{
     asset::{embedded_asset, load_embedded_asset},
     prelude::*,
     render::{
-        Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{
-            BindGroupLayoutDescriptor, CachedRenderPipelineId, RenderPipelineDescriptor,
-            SpecializedRenderPipeline,
+            BindGroupLayoutDescriptor, RenderPipelineDescriptor, SpecializedRenderPipeline,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -15,10 +13,10 @@ use bevy::{
 
 use super::{
     frame::{
-        Frame, FrameLayout, FrameStartup, Gpu, Group, Input, Kept, Layers, NORMAL_FORMAT, Stage,
+        Frame, FrameLayout, Group, Input, Inputs, Kept, Layers, NORMAL_FORMAT, NoUniform, Stage,
         add_stage, cleared,
         pipelines::{Tiles, fragment, one_texture_layout, tile_pipeline},
-        splats::{Class, SplatLayouts, Splats, normals_pipeline},
+        splats::{Class, SplatLayouts, SplatPass, Splats, normals_pipeline},
         timed,
     },
     surface::{Surface, Variant, ViewSurfaces},
@@ -44,41 +42,20 @@ pub(super) struct NormalsPipeline {
     depth_normals: Handle<Shader>,
 }
 
-/// Layers that normals are computed from.
-#[derive(Component, Default)]
-pub(super) struct NormalsGroups {
-    bulk: Group,
-    spray: Group,
-}
-
 pub(super) fn plugin(app: &mut App) {
     embedded_asset!(app, "depth_normals.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app
-        .add_systems(RenderStartup, init_pipeline.after(FrameStartup))
-        .add_systems(
-            Render,
-            prepare_groups.in_set(RenderSystems::PrepareBindGroups),
-        );
-    add_stage::<NormalsPipeline>(render_app);
-    let world = render_app.world_mut();
-    world.register_required_components::<Surface, NormalsGroups>();
+    add_stage::<NormalsPipeline>(app);
 }
 
-fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    splats: Res<SplatLayouts>,
-) {
-    commands.insert_resource(NormalsPipeline {
-        frame: frame.clone(),
-        splats: splats.clone(),
-        layout: one_texture_layout("fluid_normals_layout"),
-        depth_normals: load_embedded_asset!(assets.as_ref(), "depth_normals.wgsl"),
-    });
+impl FromWorld for NormalsPipeline {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            splats: world.resource::<SplatLayouts>().clone(),
+            layout: one_texture_layout("fluid_normals_layout"),
+            depth_normals: load_embedded_asset!(world, "depth_normals.wgsl"),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for NormalsPipeline {
@@ -98,45 +75,22 @@ impl SpecializedRenderPipeline for NormalsPipeline {
     }
 }
 
-/// Of bulk and spray, where each is needed.
-pub(super) struct NormalsPipelines {
-    bulk: Option<CachedRenderPipelineId>,
-    spray: Option<CachedRenderPipelineId>,
-}
-
 impl Stage for NormalsPipeline {
-    type Pipelines = NormalsPipelines;
+    type Uniform = NoUniform;
+    /// The layers of bulk and spray that normals are computed from.
+    type State = [Group; 2];
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(NormalSource) -> CachedRenderPipelineId,
-    ) -> NormalsPipelines {
+    fn keys(&self, variant: &Variant) -> Vec<NormalSource> {
         let plan = &variant.plan;
-        let spray = plan.spray && !plan.index_one;
-        NormalsPipelines {
-            bulk: plan
-                .normals_from_depth()
-                .then(|| request(NormalSource::Depth)),
-            spray: spray.then(|| request(NormalSource::Ellipsoids)),
-        }
+        let bulk = plan.normals_from_depth().then_some(NormalSource::Depth);
+        let spray = (plan.spray && !plan.index_one).then_some(NormalSource::Ellipsoids);
+        bulk.into_iter().chain(spray).collect()
     }
 
-    fn ids(pipelines: &NormalsPipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        pipelines.bulk.into_iter().chain(pipelines.spray)
-    }
-}
-
-fn prepare_groups(
-    mut surfaces: Query<(&Layers, &mut NormalsGroups)>,
-    pipeline: Res<NormalsPipeline>,
-    gpu: Gpu,
-) {
-    for (layers, mut groups) in &mut surfaces {
-        let NormalsGroups { bulk, spray } = &mut *groups;
-        for (group, layers) in [(bulk, &layers.bulk), (spray, &layers.spray)] {
-            let inputs = [Input::texture(layers.as_ref())];
-            group.prepare(&gpu, "fluid_normals", &pipeline.layout, &inputs);
+    fn prepare(&self, of: &mut [Group; 2], _: &Surface, layers: &Layers, inputs: &Inputs) {
+        for (group, layers) in of.iter_mut().zip([&layers.bulk, &layers.spray]) {
+            let layers = [Input::texture(layers.as_ref())];
+            group.prepare(inputs.gpu, SPAN, &self.layout, &layers);
         }
     }
 }
@@ -144,36 +98,36 @@ fn prepare_groups(
 /// The pass: normals of all surfaces.
 pub(super) fn normals(
     view: ViewQuery<&ViewSurfaces>,
-    surfaces: Query<(
-        &Surface,
-        &Frame,
-        &Layers,
-        &NormalsGroups,
-        &Kept<NormalsPipeline>,
-    )>,
+    surfaces: Query<(&Surface, &Frame, &Layers, &Kept<NormalsPipeline>)>,
     splats: Splats,
     mut ctx: RenderContext,
 ) {
     timed(&mut ctx, SPAN, |ctx| {
         let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
-        for (surface, frame, layers, groups, pipelines) in surfaces {
-            let Some(pipelines) = pipelines.drawn(surface) else {
-                continue;
-            };
-            let bulk = pipelines
-                .bulk
-                .and_then(|id| splats.cache.get_render_pipeline(id));
-            if let (Some(pipeline), Some(target), Some(group)) =
-                (bulk, &layers.bulk_normals, groups.bulk.get())
-            {
-                let targets = [cleared(target, [0.0; 4])];
-                let mut pass = frame.begin(ctx, SPAN, &targets, None, pipeline);
-                pass.set_bind_group(1, group, &[]);
-                frame.draw_tiles(&mut pass);
-            }
-            if let Some(pipeline) = pipelines.spray {
-                let (target, of) = (&layers.spray_normals, (surface, frame));
-                splats.normals(ctx, of, &groups.spray, target, pipeline, Class::Spray);
+        for (surface, frame, layers, kept) in surfaces {
+            let [bulk_layers, spray_layers] = &kept.state;
+            for (source, pipeline) in kept.pipelines(surface) {
+                match source {
+                    NormalSource::Depth => {
+                        let pipeline = splats.cache.get_render_pipeline(*pipeline);
+                        let (Some(pipeline), Some(target), Some(group)) =
+                            (pipeline, &layers.bulk_normals, bulk_layers.get())
+                        else {
+                            continue;
+                        };
+                        let targets = [cleared(target, [0.0; 4])];
+                        let mut pass = frame.begin(ctx, SPAN, &targets, None, pipeline);
+                        pass.set_bind_group(1, group, &[]);
+                        frame.draw_tiles(&mut pass);
+                    }
+                    NormalSource::Ellipsoids => {
+                        if let Some(finished) = spray_layers.get() {
+                            let target = &layers.spray_normals;
+                            let pass = SplatPass::normals(finished, target, *pipeline);
+                            splats.record(ctx, (surface, frame), pass, &[Class::Spray]);
+                        }
+                    }
+                }
             }
         }
     });

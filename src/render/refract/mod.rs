@@ -7,11 +7,10 @@ use bevy::{
     asset::{embedded_asset, load_embedded_asset},
     prelude::*,
     render::{
-        GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
-            PipelineCache, RenderPipelineDescriptor, ShaderStages, ShaderType,
-            SpecializedRenderPipeline, binding_types::uniform_buffer,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, PipelineCache,
+            RenderPipelineDescriptor, ShaderStages, ShaderType, SpecializedRenderPipeline,
+            binding_types::uniform_buffer,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -24,14 +23,14 @@ pub use self::{
 };
 use super::{
     frame::{
-        EXIT_FORMAT, Frame, FrameLayout, FrameStartup, Gpu, Group, Input, Kept, Layers, Offset,
-        Placeholder, RADIANCE_FORMAT, Stage, TRANSMISSION_FORMAT, UniformArray, add_stage, cleared,
+        EXIT_FORMAT, Frame, FrameLayout, Group, Inputs, Kept, Layers, RADIANCE_FORMAT, Stage,
+        TRANSMISSION_FORMAT, add_stage, cleared,
         pipelines::{Tiles, defs, fragment, tile_pipeline, unfiltered},
         timed,
     },
     lighting::{LightingLayout, ViewLighting},
     surface::{
-        Surface, SurfaceSystems, Variant, ViewSurfaces,
+        Surface, Variant, ViewSurfaces,
         plan::{MediumTerms, Plan},
     },
 };
@@ -42,7 +41,7 @@ pub(crate) const SPAN: &str = "fluid_refract";
 
 /// `Tracing` in `layers.wgsl`.
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
-struct GpuTracing {
+pub(super) struct GpuTracing {
     coarse_samples: u32,
     contact: f32,
 }
@@ -118,61 +117,37 @@ pub(super) struct RefractPipeline {
     shader: Handle<Shader>,
 }
 
-#[derive(Component, Default)]
-pub(super) struct Refract {
-    offset: Offset,
-    group: Group,
-}
-
 pub(super) fn plugin(app: &mut App) {
     load_shader_library!(app, "inside.wgsl");
     load_shader_library!(app, "layers.wgsl");
     load_shader_library!(app, "track.wgsl");
     load_shader_library!(app, "search.wgsl");
     embedded_asset!(app, "refract.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app
-        .init_gpu_resource::<UniformArray<GpuTracing>>()
-        .add_systems(RenderStartup, init_pipeline.after(FrameStartup))
-        .add_systems(
-            Render,
-            (
-                prepare_uniforms.in_set(SurfaceSystems::Resources),
-                prepare_groups.in_set(RenderSystems::PrepareBindGroups),
-            ),
-        );
-    add_stage::<RefractPipeline>(render_app);
-    let world = render_app.world_mut();
-    world.register_required_components::<Surface, Refract>();
+    add_stage::<RefractPipeline>(app);
 }
 
-fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    lighting: Res<LightingLayout>,
-) {
-    commands.insert_resource(RefractPipeline {
-        frame: frame.clone(),
-        lighting: lighting.0.clone(),
-        layout: BindGroupLayoutDescriptor::new(
-            "fluid_refract_layout",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    unfiltered(),
-                    unfiltered(),
-                    unfiltered(),
-                    unfiltered(),
-                    unfiltered(),
-                    uniform_buffer::<GpuTracing>(true),
+impl FromWorld for RefractPipeline {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            lighting: world.resource::<LightingLayout>().0.clone(),
+            layout: BindGroupLayoutDescriptor::new(
+                "fluid_refract_layout",
+                &BindGroupLayoutEntries::sequential(
+                    ShaderStages::FRAGMENT,
+                    (
+                        unfiltered(),
+                        unfiltered(),
+                        unfiltered(),
+                        unfiltered(),
+                        unfiltered(),
+                        uniform_buffer::<GpuTracing>(true),
+                    ),
                 ),
             ),
-        ),
-        shader: load_embedded_asset!(assets.as_ref(), "refract.wgsl"),
-    });
+            shader: load_embedded_asset!(world, "refract.wgsl"),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for RefractPipeline {
@@ -195,82 +170,51 @@ impl SpecializedRenderPipeline for RefractPipeline {
 }
 
 impl Stage for RefractPipeline {
-    type Pipelines = CachedRenderPipelineId;
+    type Uniform = GpuTracing;
+    type State = Group;
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(RefractKey) -> CachedRenderPipelineId,
-    ) -> CachedRenderPipelineId {
-        request(RefractKey::new(&variant.plan, &variant.settings))
+    fn keys(&self, variant: &Variant) -> Vec<RefractKey> {
+        vec![RefractKey::new(&variant.plan, &variant.settings)]
     }
 
-    fn ids(pipeline: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        [*pipeline].into_iter()
+    fn uniform(surface: &Surface) -> Option<GpuTracing> {
+        let settings = &surface.drawn.as_ref()?.settings;
+        Some(GpuTracing::new(settings, surface.uniform.radius))
     }
-}
 
-fn prepare_uniforms(
-    mut surfaces: Query<(&Surface, &mut Refract)>,
-    mut uniforms: ResMut<UniformArray<GpuTracing>>,
-    gpu: Gpu,
-) {
-    uniforms.clear();
-    for (surface, mut refract) in &mut surfaces {
-        if let Some(variant) = &surface.drawn {
-            let radius = surface.uniform.radius;
-            refract.offset = uniforms.push(GpuTracing::new(&variant.settings, radius));
-        }
-    }
-    uniforms.write(&gpu);
-}
-
-fn prepare_groups(
-    mut surfaces: Query<(&Layers, &mut Refract)>,
-    pipeline: Res<RefractPipeline>,
-    placeholder: Res<Placeholder>,
-    uniforms: Res<UniformArray<GpuTracing>>,
-    gpu: Gpu,
-) {
-    for (layers, mut refract) in &mut surfaces {
-        let or_nothing = |target| Input::texture_or(target, &placeholder);
-        let inputs = [
-            or_nothing(&layers.bulk),
-            or_nothing(&layers.bulk_normals),
-            or_nothing(&layers.spray),
-            or_nothing(&layers.spray_normals),
-            or_nothing(&layers.thickness),
-            uniforms.input(),
+    fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
+        let traced = [
+            inputs.or_nothing(&layers.bulk),
+            inputs.or_nothing(&layers.bulk_normals),
+            inputs.or_nothing(&layers.spray),
+            inputs.or_nothing(&layers.spray_normals),
+            inputs.or_nothing(&layers.thickness),
+            inputs.uniform.clone(),
         ];
-        refract
-            .group
-            .prepare(&gpu, "fluid_refract", &pipeline.layout, &inputs);
+        group.prepare(inputs.gpu, SPAN, &self.layout, &traced);
     }
 }
 
 /// The pass: all surfaces of the view.
 pub(super) fn refract(
     view: ViewQuery<(&ViewSurfaces, &ViewLighting)>,
-    surfaces: Query<(&Surface, &Frame, &Layers, &Refract, &Kept<RefractPipeline>)>,
+    surfaces: Query<(&Surface, &Frame, &Layers, &Kept<RefractPipeline>)>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
     let (view, lighting) = view.into_inner();
     timed(&mut ctx, SPAN, |ctx| {
-        for (surface, frame, layers, refract, pipeline) in surfaces.iter_many(&view.surfaces) {
-            let pipeline = pipeline.drawn(surface);
-            let (Some(pipeline), Some(group), Some((light, light_offset))) = (
-                pipeline.and_then(|&id| cache.get_render_pipeline(id)),
-                refract.group.get(),
-                lighting.get(),
-            ) else {
+        for (surface, frame, layers, kept) in surfaces.iter_many(&view.surfaces) {
+            let (Some(pipeline), Some(group), Some((light, light_offset))) =
+                (kept.only(surface, &cache), kept.state.get(), lighting.get())
+            else {
                 continue;
             };
             let targets = [&layers.radiance, &layers.transmission, &layers.exits];
             let targets =
                 targets.map(|target| target.as_ref().and_then(|it| cleared(it, [0.0; 4])));
             let mut pass = frame.begin(ctx, SPAN, &targets, None, pipeline);
-            pass.set_bind_group(1, group, &[refract.offset.bytes()]);
+            pass.set_bind_group(1, group, &[kept.offset.bytes()]);
             pass.set_bind_group(2, light, &light_offset);
             frame.draw_tiles(&mut pass);
         }

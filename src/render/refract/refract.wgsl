@@ -9,7 +9,7 @@
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
 #import bevy_fluid::render::refract::inside::{accumulated_length, medium_source}
 #import bevy_fluid::render::refract::layers::{
-    BACK, BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen, tracing,
+    BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, load_normal, on_screen, tracing,
 }
 #import bevy_fluid::render::refract::search::{Target, evaluations, meets_scene, search}
 #import bevy_fluid::render::straight::layered_length

@@ -2,7 +2,7 @@
 #define_import_path bevy_fluid::render::refract::track
 
 #import bevy_fluid::render::frame::{frame, surface, view}
-#import bevy_fluid::render::functions::{DepthMap, depth_map, depth_slope, pixel_from_ndc}
+#import bevy_fluid::render::functions::{DepthMap, depth_map, depth_slope}
 
 // A ray's position on screen and in device depth is affine in s = t / w: t is the distance along
 // the ray, w the clip coordinate there. Over a plane the layers' device depth is affine as well, so
@@ -40,10 +40,6 @@ fn distance_from_s(track: Track, s: f32) -> f32 {
 
 fn device_at(track: Track, s: f32) -> vec3<f32> {
     return track.start + s * track.along;
-}
-
-fn pixel_at(track: Track, s: f32) -> vec2<f32> {
-    return pixel_from_ndc(device_at(track, s).xy);
 }
 
 fn w_at(track: Track, s: f32) -> f32 {

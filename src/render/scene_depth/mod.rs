@@ -2,13 +2,11 @@
 //! sample it.
 
 use bevy::{
-    app::SubApp,
     asset::{embedded_asset, load_embedded_asset},
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
     prelude::*,
     render::{
         Render, RenderApp, RenderStartup, RenderSystems,
-        diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
             PipelineCache, RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
@@ -21,7 +19,7 @@ use bevy::{
 use super::{
     frame::{
         Frame, Gpu, GpuFrame, Group, Input, SCENE_DEPTH_FORMAT, SceneDepth, UniformArray, cleared,
-        pipelines::fragment,
+        pipelines::fragment, timed,
     },
     surface::{Surface, SurfaceSystems, ViewSurfaces},
 };
@@ -43,10 +41,6 @@ pub(super) fn plugin(app: &mut App) {
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
-    add_systems(render_app);
-}
-
-fn add_systems(render_app: &mut SubApp) {
     render_app
         .add_systems(RenderStartup, init_pipeline)
         .add_systems(
@@ -134,16 +128,14 @@ pub(super) fn scene_depth(
     ) else {
         return;
     };
-    let recorder = ctx.diagnostic_recorder();
-    let recorder = recorder.as_deref();
-    let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-        label: Some(SPAN),
-        color_attachments: &[cleared(target, [0.0; 4])],
-        ..default()
+    timed(&mut ctx, SPAN, |ctx| {
+        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some(SPAN),
+            color_attachments: &[cleared(target, [0.0; 4])],
+            ..default()
+        });
+        pass.set_render_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[frame.frame_offset()]);
+        pass.draw(0..3, 0..1);
     });
-    let span = recorder.pass_span(&mut pass, SPAN);
-    pass.set_render_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[frame.screen()]);
-    pass.draw(0..3, 0..1);
-    span.end(&mut pass);
 }

@@ -1,14 +1,11 @@
 //! The mean of the splats' normals over a window, in place of smoother layers (Takahashi & Doi).
 
 use bevy::{
-    app::SubApp,
     asset::load_embedded_asset,
     prelude::*,
     render::{
-        Render, RenderStartup, RenderSystems,
         render_resource::{
-            BindGroupLayoutDescriptor, CachedRenderPipelineId, RenderPipelineDescriptor,
-            SpecializedRenderPipeline,
+            BindGroupLayoutDescriptor, RenderPipelineDescriptor, SpecializedRenderPipeline,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -18,16 +15,21 @@ use bevy::{
 use super::{
     super::{
         frame::{
-            Frame, FrameLayout, FrameStartup, Gpu, Group, Input, Kept, Layers, NORMAL_FORMAT,
-            Stage, Target, add_stage, cleared, ensure,
-            pipelines::{Tiles, fragment, one_texture_layout, tile_pipeline},
-            splats::{Class, SplatLayouts, Splats, normals_pipeline},
+            Frame, FrameLayout, Group, Input, Inputs, Kept, Layers, NORMAL_FORMAT, NoUniform,
+            Stage, Target, cleared, ensure,
+            pipelines::{Tiles, fragment, one_texture_layout, tile_pipeline, unfiltered},
+            splats::{Class, SplatLayouts, SplatPass, Splats, normals_pipeline},
+            timed,
         },
-        surface::{Surface, SurfaceSystems, Variant, ViewSurfaces},
+        surface::{Surface, Variant, ViewSurfaces},
     },
-    SPAN, Smooth, SmoothPipeline,
+    Buffer, SmoothPipeline,
+    pipeline::layout,
 };
 use crate::settings::Smoothing;
+
+/// Name of the pass's time span.
+const AVERAGE_SPAN: &str = "fluid_average_normals";
 
 #[derive(Resource)]
 pub(in super::super) struct AveragePipeline {
@@ -39,7 +41,7 @@ pub(in super::super) struct AveragePipeline {
 }
 
 /// The normals before they are averaged.
-#[derive(Component, Default)]
+#[derive(Default)]
 pub(in super::super) struct SplatNormals {
     target: Option<Target>,
     group: Group,
@@ -47,40 +49,16 @@ pub(in super::super) struct SplatNormals {
     finished: Group,
 }
 
-pub(super) fn plugin(render_app: &mut SubApp) {
-    render_app
-        .add_systems(
-            RenderStartup,
-            init_pipeline
-                .after(super::pipeline::init_pipeline)
-                .after(FrameStartup),
-        )
-        .add_systems(
-            Render,
-            (
-                prepare_target.in_set(SurfaceSystems::Resources),
-                prepare_groups.in_set(RenderSystems::PrepareBindGroups),
-            ),
-        );
-    add_stage::<AveragePipeline>(render_app);
-    let world = render_app.world_mut();
-    world.register_required_components::<Surface, SplatNormals>();
-}
-
-fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    splats: Res<SplatLayouts>,
-    smooth: Res<SmoothPipeline>,
-) {
-    commands.insert_resource(AveragePipeline {
-        frame: frame.clone(),
-        splats: splats.clone(),
-        window: smooth.layout.clone(),
-        normals: one_texture_layout("fluid_average_normals_layout"),
-        shader: load_embedded_asset!(assets.as_ref(), "average_normals.wgsl"),
-    });
+impl FromWorld for AveragePipeline {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            splats: world.resource::<SplatLayouts>().clone(),
+            window: layout(unfiltered()),
+            normals: one_texture_layout("fluid_average_normals_layout"),
+            shader: load_embedded_asset!(world, "average_normals.wgsl"),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for AveragePipeline {
@@ -103,20 +81,36 @@ impl SpecializedRenderPipeline for AveragePipeline {
 }
 
 impl Stage for AveragePipeline {
-    /// Of the normals and of their average.
-    type Pipelines = Option<[CachedRenderPipelineId; 2]>;
+    type Uniform = NoUniform;
+    type State = SplatNormals;
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        request: impl FnMut(Option<u32>) -> CachedRenderPipelineId,
-    ) -> Self::Pipelines {
-        let half_taps = half_taps(variant)?;
-        Some([None, Some(half_taps)].map(request))
+    fn keys(&self, variant: &Variant) -> Vec<Option<u32>> {
+        let half_taps = half_taps(variant);
+        half_taps.map_or(vec![], |half_taps| vec![None, Some(half_taps)])
     }
 
-    fn ids(pipelines: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        pipelines.iter().flatten().copied()
+    fn prepare(
+        &self,
+        state: &mut SplatNormals,
+        surface: &Surface,
+        layers: &Layers,
+        inputs: &Inputs,
+    ) {
+        let wanted = surface.drawn.as_ref().and_then(half_taps).is_some();
+        let (gpu, label) = (inputs.gpu, AVERAGE_SPAN);
+        let (target, size) = (&mut state.target, layers.size());
+        ensure(target, wanted, gpu, label, size, NORMAL_FORMAT);
+        if !wanted {
+            *state = default();
+        } else {
+            for (group, texture) in [
+                (&mut state.group, &state.target),
+                (&mut state.finished, &layers.bulk),
+            ] {
+                let texture = [Input::texture(texture.as_ref())];
+                group.prepare(gpu, label, &self.normals, &texture);
+            }
+        }
     }
 }
 
@@ -128,43 +122,6 @@ fn half_taps(variant: &Variant) -> Option<u32> {
     }
 }
 
-fn prepare_target(mut surfaces: Query<(&Surface, &Layers, &mut SplatNormals)>, gpu: Gpu) {
-    for (surface, layers, mut normals) in &mut surfaces {
-        ensure(
-            &mut normals.target,
-            surface
-                .drawn
-                .as_ref()
-                .is_some_and(|it| half_taps(it).is_some()),
-            &gpu,
-            "fluid_splat_normals",
-            layers.size(),
-            NORMAL_FORMAT,
-        );
-    }
-}
-
-fn prepare_groups(
-    mut surfaces: Query<(&Layers, &mut SplatNormals)>,
-    pipeline: Res<AveragePipeline>,
-    gpu: Gpu,
-) {
-    for (layers, mut normals) in &mut surfaces {
-        let SplatNormals {
-            target,
-            group,
-            finished,
-        } = &mut *normals;
-        if target.is_none() {
-            continue;
-        }
-        for (group, texture) in [(group, &*target), (finished, &layers.bulk)] {
-            let inputs = [Input::texture(texture.as_ref())];
-            group.prepare(&gpu, "fluid_splat_normals", &pipeline.normals, &inputs);
-        }
-    }
-}
-
 /// The pass: the bulk's normals of surfaces that average them.
 pub(in super::super) fn average_normals(
     view: ViewQuery<&ViewSurfaces>,
@@ -172,39 +129,40 @@ pub(in super::super) fn average_normals(
         &Surface,
         &Frame,
         &Layers,
-        &Smooth,
-        &SplatNormals,
+        &Kept<SmoothPipeline>,
         &Kept<AveragePipeline>,
     )>,
     splats: Splats,
     mut ctx: RenderContext,
 ) {
-    let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
-    for (surface, frame, layers, smooth, normals, pipelines) in surfaces {
-        let Some(Some([draw, average])) = pipelines.drawn(surface) else {
-            continue;
-        };
-        let (finished, target) = (&normals.finished, &normals.target);
-        splats.normals(
-            &mut ctx,
-            (surface, frame),
-            finished,
-            target,
-            *draw,
-            Class::Bulk,
-        );
-        let (Some(pipeline), Some(window), Some(group), Some(target)) = (
-            splats.cache.get_render_pipeline(*average),
-            smooth.group(super::Buffer::Layers).get(),
-            normals.group.get(),
-            &layers.bulk_normals,
-        ) else {
-            continue;
-        };
-        let targets = [cleared(target, [0.0; 4])];
-        let mut pass = frame.begin(&mut ctx, SPAN, &targets, None, pipeline);
-        pass.set_bind_group(1, window, &[smooth.offset.bytes()]);
-        pass.set_bind_group(2, group, &[]);
-        frame.draw_tiles(&mut pass);
-    }
+    timed(&mut ctx, AVERAGE_SPAN, |ctx| {
+        let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
+        for (surface, frame, layers, smooth, kept) in surfaces {
+            let SplatNormals {
+                target: normals,
+                group,
+                finished,
+            } = &kept.state;
+            let ([(_, draw), (_, average)], Some(finished)) =
+                (kept.pipelines(surface), finished.get())
+            else {
+                continue;
+            };
+            let pass = SplatPass::normals(finished, normals, *draw);
+            splats.record(ctx, (surface, frame), pass, &[Class::Bulk]);
+            let (Some(pipeline), Some(window), Some(group), Some(target)) = (
+                splats.cache.get_render_pipeline(*average),
+                smooth.state.group(Buffer::Layers).get(),
+                group.get(),
+                &layers.bulk_normals,
+            ) else {
+                continue;
+            };
+            let targets = [cleared(target, [0.0; 4])];
+            let mut pass = frame.begin(ctx, AVERAGE_SPAN, &targets, None, pipeline);
+            pass.set_bind_group(1, window, &[smooth.offset.bytes()]);
+            pass.set_bind_group(2, group, &[]);
+            frame.draw_tiles(&mut pass);
+        }
+    });
 }

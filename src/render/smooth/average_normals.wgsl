@@ -18,7 +18,6 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
             if weight <= 0.0 {
                 continue;
             }
-            // Without a surface the normal is zero and stays zero.
             let there = valid_layers(layers_at(pixel).xy);
             let encoded = textureLoad(normals, texel_at(pixel), 0);
             front += select(0.0, weight, there.x) * decode_normal(encoded.xy);

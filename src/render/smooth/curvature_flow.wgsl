@@ -34,8 +34,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let zxx = right - 2.0 * z + left;
     let zyy = down - 2.0 * z + up;
     let zxy = 0.25 * diagonal;
-    // C_x, C_y of the paper: extent of a pixel at depth 1.
-    // A mirrored view has no negative extents.
+    // C_x, C_y of the paper: the extent of a pixel at depth 1; `abs`, because a mirrored view has
+    // negative focal lengths.
     let focal = abs(vec2(view.clip_from_view[0][0], view.clip_from_view[1][1]));
     let c = 2.0 / (frame.view_size * focal);
     let cx2 = c.x * c.x;

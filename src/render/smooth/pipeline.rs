@@ -4,7 +4,7 @@ use bevy::{
     asset::{embedded_asset, load_embedded_asset},
     prelude::*,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
+        BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindGroupLayoutEntryBuilder,
         RenderPipelineDescriptor, ShaderStages, ShaderType, SpecializedRenderPipeline,
         TextureSampleType,
         binding_types::{texture_2d, uniform_buffer},
@@ -17,12 +17,13 @@ use super::published::PublishedShaders;
 use super::{
     super::{
         frame::{
-            EXIT_FORMAT, FrameLayout, NORMAL_FORMAT, Stage,
+            EXIT_FORMAT, FrameLayout, Input, Inputs, Layers, NORMAL_FORMAT, Stage,
             pipelines::{Tiles, defs, fragment, tile_pipeline, unfiltered},
             support::LAYER_FORMAT,
         },
-        surface::Variant,
+        surface::{Surface, Variant},
     },
+    SPAN, Smooth,
     steps::{Buffer, SmoothKernel, Step, radii, steps},
 };
 use crate::settings::Smoothing;
@@ -56,10 +57,10 @@ impl GpuSmoothing {
 
 #[derive(Resource)]
 pub(crate) struct SmoothPipeline {
-    pub(super) frame: FrameLayout,
-    pub(super) layout: BindGroupLayoutDescriptor,
+    frame: FrameLayout,
+    layout: BindGroupLayoutDescriptor,
     /// For a pass that reads [`Buffer::Slopes`].
-    pub(super) slopes_layout: BindGroupLayoutDescriptor,
+    slopes_layout: BindGroupLayoutDescriptor,
     plane_fit: Handle<Shader>,
     plane_fit_tls: Handle<Shader>,
     #[cfg(feature = "published")]
@@ -72,26 +73,25 @@ pub(super) fn load_shaders(app: &mut App) {
     embedded_asset!(app, "plane_fit_tls.wgsl");
 }
 
-pub(super) fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-) {
-    let layout = |label, texture| {
-        let entries = (texture, uniform_buffer::<GpuSmoothing>(true));
-        let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
-        BindGroupLayoutDescriptor::new(label, &entries)
-    };
-    let slopes = texture_2d(TextureSampleType::Uint);
-    commands.insert_resource(SmoothPipeline {
-        frame: frame.clone(),
-        layout: layout("fluid_smooth_layout", unfiltered()),
-        slopes_layout: layout("fluid_slopes_layout", slopes),
-        plane_fit: load_embedded_asset!(assets.as_ref(), "plane_fit.wgsl"),
-        plane_fit_tls: load_embedded_asset!(assets.as_ref(), "plane_fit_tls.wgsl"),
-        #[cfg(feature = "published")]
-        published: PublishedShaders::load(&assets),
-    });
+/// Of a pass that reads one texture and the parameters.
+pub(super) fn layout(texture: BindGroupLayoutEntryBuilder) -> BindGroupLayoutDescriptor {
+    let entries = (texture, uniform_buffer::<GpuSmoothing>(true));
+    let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
+    BindGroupLayoutDescriptor::new("fluid_smooth_layout", &entries)
+}
+
+impl FromWorld for SmoothPipeline {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            layout: layout(unfiltered()),
+            slopes_layout: layout(texture_2d(TextureSampleType::Uint)),
+            plane_fit: load_embedded_asset!(world, "plane_fit.wgsl"),
+            plane_fit_tls: load_embedded_asset!(world, "plane_fit_tls.wgsl"),
+            #[cfg(feature = "published")]
+            published: PublishedShaders::load(world),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for SmoothPipeline {
@@ -144,18 +144,30 @@ impl SpecializedRenderPipeline for SmoothPipeline {
 }
 
 impl Stage for SmoothPipeline {
-    type Pipelines = Vec<(Step, CachedRenderPipelineId)>;
+    type Uniform = GpuSmoothing;
+    type State = Smooth;
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(Step) -> CachedRenderPipelineId,
-    ) -> Self::Pipelines {
-        let steps = steps(&variant.plan.smoothing).into_iter();
-        steps.map(|step| (step, request(step))).collect()
+    fn keys(&self, variant: &Variant) -> Vec<Step> {
+        let mut steps = steps(&variant.plan.smoothing);
+        for step in &mut steps {
+            step.normals &= !variant.plan.index_one;
+        }
+        steps
     }
 
-    fn ids(pipelines: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        pipelines.iter().map(|(_, id)| *id)
+    fn uniform(surface: &Surface) -> Option<GpuSmoothing> {
+        let smoothing = &surface.plan()?.smoothing;
+        Some(GpuSmoothing::new(smoothing, surface.uniform.radius))
+    }
+
+    fn prepare(&self, groups: &mut Smooth, _: &Surface, layers: &Layers, inputs: &Inputs) {
+        for (group, texture, layout) in [
+            (&mut groups.layers, &layers.bulk, &self.layout),
+            (&mut groups.scratch, &layers.scratch, &self.layout),
+            (&mut groups.slopes, &layers.exits, &self.slopes_layout),
+        ] {
+            let read = [Input::texture(texture.as_ref()), inputs.uniform.clone()];
+            group.prepare(inputs.gpu, SPAN, layout, &read);
+        }
     }
 }

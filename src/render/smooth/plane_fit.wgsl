@@ -3,7 +3,7 @@
 
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
 #import bevy_fluid::render::slopes::one_sided_slope
-#import bevy_fluid::render::smooth::window::{Tap, Window, accept, edge_weight, tap_at, window_at}
+#import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
 
 struct Output {
 #ifdef TO_SLOPES

@@ -25,11 +25,11 @@ pub(super) fn embed_shaders(app: &mut App) {
 }
 
 impl PublishedShaders {
-    pub(super) fn load(assets: &AssetServer) -> Self {
+    pub(super) fn load(world: &World) -> Self {
         Self {
-            bilateral: load_embedded_asset!(assets, "bilateral.wgsl"),
-            narrow_range: load_embedded_asset!(assets, "narrow_range.wgsl"),
-            curvature_flow: load_embedded_asset!(assets, "curvature_flow.wgsl"),
+            bilateral: load_embedded_asset!(world, "bilateral.wgsl"),
+            narrow_range: load_embedded_asset!(world, "narrow_range.wgsl"),
+            curvature_flow: load_embedded_asset!(world, "curvature_flow.wgsl"),
         }
     }
 

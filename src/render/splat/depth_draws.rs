@@ -2,173 +2,146 @@
 //! the farthest back, and a pass merges the two.
 
 use bevy::{
-    app::SubApp,
     asset::load_embedded_asset,
-    core_pipeline::FullscreenShader,
+    core_pipeline::{FullscreenShader, core_3d::CORE_3D_DEPTH_FORMAT},
     prelude::*,
     render::{
-        Render, RenderStartup, RenderSystems,
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId, LoadOp,
-            Operations, PipelineCache, RenderPassDepthStencilAttachment, RenderPassDescriptor,
-            RenderPipelineDescriptor, ShaderStages, StoreOp, TextureFormat,
+            Operations, RenderPassDepthStencilAttachment, RenderPassDescriptor,
+            RenderPipelineDescriptor, ShaderStages, StoreOp, VertexState,
             binding_types::texture_depth_2d,
         },
         renderer::RenderContext,
     },
 };
 
-use super::{
-    super::{
-        frame::{
-            Gpu, Group, Input, Layers, Target, cleared, ensure,
-            pipelines::{NO_LAYERS, fragment},
-            support::{FluidSupport, LAYER_FORMAT},
-        },
-        surface::{Surface, SurfaceSystems},
+use super::super::{
+    frame::{
+        Frame, Gpu, Group, Input, Layers, Target, cleared, ensure,
+        pipelines::{NO_LAYERS, fragment},
+        splats::{Class, SplatPass, Splats},
+        support::LAYER_FORMAT,
     },
-    ClassDraw,
+    surface::Surface,
 };
 
-/// Of the depth-only draws.
-pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
-
 /// The pass that merges depths.
-#[derive(Resource)]
-pub(in super::super) struct DepthDraws {
+pub(super) struct Merge {
+    fullscreen: VertexState,
     layout: BindGroupLayoutDescriptor,
-    merge: CachedRenderPipelineId,
+    shader: Handle<Shader>,
+}
+
+impl FromWorld for Merge {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            fullscreen: world.resource::<FullscreenShader>().to_vertex_state(),
+            layout: BindGroupLayoutDescriptor::new(
+                "fluid_merge_layout",
+                &BindGroupLayoutEntries::sequential(
+                    ShaderStages::FRAGMENT,
+                    (texture_depth_2d(), texture_depth_2d()),
+                ),
+            ),
+            shader: load_embedded_asset!(world, "merge.wgsl"),
+        }
+    }
+}
+
+impl Merge {
+    pub(super) fn descriptor(&self) -> RenderPipelineDescriptor {
+        RenderPipelineDescriptor {
+            label: Some("fluid_merge_pipeline".into()),
+            layout: vec![self.layout.clone()],
+            vertex: self.fullscreen.clone(),
+            fragment: Some(fragment(&self.shader, vec![], &[LAYER_FORMAT], None)),
+            ..default()
+        }
+    }
 }
 
 /// Front and back of one class at a time.
-#[derive(Component, Default)]
-pub(in super::super) struct DepthTextures {
+#[derive(Default)]
+pub(crate) struct DepthTextures {
     front: Option<Target>,
     back: Option<Target>,
     group: Group,
 }
 
-pub(super) fn plugin(render_app: &mut SubApp) {
-    render_app
-        .add_systems(RenderStartup, init_merge)
-        .add_systems(
-            Render,
-            (
-                wait_for_merge.in_set(SurfaceSystems::Request),
-                prepare_textures.in_set(RenderSystems::PrepareBindGroups),
-            ),
-        );
-    let world = render_app.world_mut();
-    world.register_required_components::<Surface, DepthTextures>();
-}
-
-fn init_merge(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    fullscreen: Res<FullscreenShader>,
-    cache: Res<PipelineCache>,
-) {
-    let layout = BindGroupLayoutDescriptor::new(
-        "fluid_merge_layout",
-        &BindGroupLayoutEntries::sequential(
-            ShaderStages::FRAGMENT,
-            (texture_depth_2d(), texture_depth_2d()),
-        ),
-    );
-    let shader = load_embedded_asset!(assets.as_ref(), "merge.wgsl");
-    let merge = cache.queue_render_pipeline(RenderPipelineDescriptor {
-        label: Some("fluid_merge_pipeline".into()),
-        layout: vec![layout.clone()],
-        vertex: fullscreen.to_vertex_state(),
-        fragment: Some(fragment(&shader, vec![], &[LAYER_FORMAT], None)),
-        ..default()
-    });
-    commands.insert_resource(DepthDraws { layout, merge });
-}
-
-fn wait_for_merge(
-    mut surfaces: Query<&mut Surface>,
-    support: Res<FluidSupport>,
-    depth_draws: Res<DepthDraws>,
-    cache: Res<PipelineCache>,
-) {
-    if support.max_blend || cache.get_render_pipeline(depth_draws.merge).is_some() {
-        return;
-    }
-    for mut surface in &mut surfaces {
-        surface.waiting = true;
-    }
-}
-
-fn prepare_textures(
-    mut surfaces: Query<(&Layers, &mut DepthTextures)>,
-    support: Res<FluidSupport>,
-    depth_draws: Res<DepthDraws>,
-    gpu: Gpu,
-) {
-    if support.max_blend {
-        return;
-    }
-    for (layers, mut textures) in &mut surfaces {
-        let there = layers.size() != UVec2::ZERO;
-        let DepthTextures { front, back, group } = &mut *textures;
+impl DepthTextures {
+    pub(super) fn prepare(&mut self, merge: &Merge, layers: &Layers, gpu: &Gpu) {
+        let size = layers.size();
+        let (front, back) = (&mut self.front, &mut self.back);
         for (target, label) in [
             (&mut *front, "fluid_front_depth"),
             (&mut *back, "fluid_back_depth"),
         ] {
-            ensure(target, there, &gpu, label, layers.size(), DEPTH_FORMAT);
+            ensure(
+                target,
+                size != UVec2::ZERO,
+                gpu,
+                label,
+                size,
+                CORE_3D_DEPTH_FORMAT,
+            );
         }
-        let inputs = [
-            Input::texture(front.as_ref()),
-            Input::texture(back.as_ref()),
-        ];
-        group.prepare(&gpu, "fluid_merge", &depth_draws.layout, &inputs);
+        let depths = [front, back].map(|it| Input::texture(it.as_ref()));
+        self.group
+            .prepare(gpu, "fluid_merge", &merge.layout, &depths);
     }
-}
 
-impl DepthDraws {
     /// Front and back of a class, then both into its layers.
     pub(super) fn record(
         &self,
         ctx: &mut RenderContext,
-        draw: &ClassDraw,
-        textures: &DepthTextures,
+        (splats, class): (&Splats, Class),
+        of: (&Surface, &Frame),
         layers: &Target,
-        [front, back]: [Option<CachedRenderPipelineId>; 2],
+        (depths, merge): (
+            [Option<CachedRenderPipelineId>; 2],
+            Option<CachedRenderPipelineId>,
+        ),
     ) {
-        let (Some(near), Some(far), Some(group)) =
-            (&textures.front, &textures.back, textures.group.get())
+        let merge = merge.and_then(|id| splats.cache.get_render_pipeline(id));
+        let (Some(near), Some(far), Some(group), Some(merge)) =
+            (&self.front, &self.back, self.group.get(), merge)
         else {
             return;
         };
-        for (target, pipeline, clear) in [(near, front, 0.0), (far, back, 1.0)] {
-            let depth = RenderPassDepthStencilAttachment {
+        for ((target, clear), pipeline) in [(near, 0.0), (far, 1.0)].into_iter().zip(depths) {
+            let depth = Some(RenderPassDepthStencilAttachment {
                 view: &target.view,
                 depth_ops: Some(Operations {
                     load: LoadOp::Clear(clear),
                     store: StoreOp::Store,
                 }),
                 stencil_ops: None,
-            };
-            match pipeline {
-                Some(pipeline) => draw.record(ctx, None, Some(depth), pipeline),
-                // Cleared, but empty.
-                None => drop(ctx.begin_tracked_render_pass(RenderPassDescriptor {
-                    label: Some("fluid_no_backs"),
-                    depth_stencil_attachment: Some(depth),
+            });
+            let label = "fluid_depths";
+            if pipeline.is_some() {
+                let pass = SplatPass {
+                    label,
+                    pipeline,
+                    depth,
                     ..default()
-                })),
+                };
+                splats.record(ctx, of, pass, &[class]);
+            } else {
+                // Cleared, but empty.
+                drop(ctx.begin_tracked_render_pass(RenderPassDescriptor {
+                    label: Some(label),
+                    depth_stencil_attachment: depth,
+                    ..default()
+                }));
             }
         }
-        let Some(pipeline) = draw.splats.cache.get_render_pipeline(self.merge) else {
-            return;
-        };
         let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("fluid_merge"),
             color_attachments: &[cleared(layers, NO_LAYERS)],
             ..default()
         });
-        pass.set_render_pipeline(pipeline);
+        pass.set_render_pipeline(merge);
         pass.set_bind_group(0, group, &[]);
         pass.draw(0..3, 0..1);
     }

@@ -1,6 +1,6 @@
 // Two depth textures into one layer texture, where the adapter cannot blend 32-bit floats.
 
-#import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
+#import bevy_fluid::render::types::NO_BACK
 
 @group(0) @binding(0) var front: texture_depth_2d;
 @group(0) @binding(1) var back: texture_depth_2d;

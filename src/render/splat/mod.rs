@@ -1,36 +1,25 @@
 //! Ellipsoids into depth layers: one draw per class, both depths from one quadratic.
 
 mod depth_draws;
-mod overdraw;
 mod pipeline;
 
 use bevy::{
     asset::embedded_asset,
     prelude::*,
-    render::{
-        RenderApp, RenderStartup,
-        render_resource::{
-            CachedRenderPipelineId, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-        },
-        renderer::{RenderContext, ViewQuery},
-    },
+    render::renderer::{RenderContext, ViewQuery},
 };
 
 #[cfg(all(test, feature = "published"))]
-pub(super) use self::pipeline::{SplatKey, SplatOutput};
-use self::{
-    depth_draws::{DepthDraws, DepthTextures},
-    pipeline::LayerDraws,
-};
-pub(super) use self::{overdraw::overdraw, pipeline::SplatPipeline};
+pub(super) use self::pipeline::SplatKey;
+pub(super) use self::pipeline::{SplatOutput, SplatPipeline};
 use super::{
     frame::{
-        Frame, FrameStartup, Kept, Layers, add_stage, cleared,
+        Frame, Kept, Layers, add_stage, cleared,
         pipelines::NO_LAYERS,
-        splats::{Class, Splats},
+        splats::{Class, SplatPass, Splats},
         timed,
     },
-    surface::{Surface, ViewSurfaces, plan::Plan},
+    surface::{Surface, ViewSurfaces},
 };
 
 /// Name of the pass's time span.
@@ -39,34 +28,21 @@ pub(crate) const SPAN: &str = "fluid_splat";
 pub(super) fn plugin(app: &mut App) {
     embedded_asset!(app, "splat.wgsl");
     embedded_asset!(app, "merge.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app.add_systems(RenderStartup, pipeline::init_pipeline.after(FrameStartup));
-    add_stage::<SplatPipeline>(render_app);
-    depth_draws::plugin(render_app);
+    add_stage::<SplatPipeline>(app);
 }
 
 /// The pass: splats of all surfaces into their layers.
 pub(super) fn splat(
     view: ViewQuery<&ViewSurfaces>,
-    surfaces: Query<(
-        &Surface,
-        &Frame,
-        &Layers,
-        &DepthTextures,
-        &Kept<SplatPipeline>,
-    )>,
-    depth_draws: Res<DepthDraws>,
+    surfaces: Query<(&Surface, &Frame, &Layers, &Kept<SplatPipeline>)>,
     splats: Splats,
     mut ctx: RenderContext,
 ) {
     timed(&mut ctx, SPAN, |ctx| {
         let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
-        for (surface, frame, layers, textures, pipelines) in surfaces {
-            let (Some(plan), Some(pipelines)) = (surface.plan(), pipelines.drawn(surface)) else {
-                continue;
-            };
+        for (surface, frame, layers, kept) in surfaces {
+            let id = |output| kept.id(surface, |key| key.output == output);
+            let of = (surface, frame);
             for (class, target) in [
                 (Class::Bulk, layers.splatted()),
                 (Class::Spray, &layers.spray),
@@ -74,54 +50,26 @@ pub(super) fn splat(
                 let Some(target) = target else {
                     continue;
                 };
-                let draw = ClassDraw {
-                    surface,
-                    frame,
-                    plan,
-                    splats: &splats,
-                    class,
-                };
-                match &pipelines.layers {
-                    LayerDraws::MaxBlend(id) => {
-                        draw.record(ctx, cleared(target, NO_LAYERS), None, *id);
-                    }
-                    LayerDraws::DepthDraws { front, back } => {
-                        depth_draws.record(ctx, &draw, textures, target, [Some(*front), *back]);
-                    }
+                let blended = id(SplatOutput::Layers).or(id(SplatOutput::Fronts));
+                if blended.is_some() {
+                    let pass = SplatPass {
+                        label: SPAN,
+                        pipeline: blended,
+                        color: cleared(target, NO_LAYERS),
+                        ..default()
+                    };
+                    splats.record(ctx, of, pass, &[class]);
+                } else {
+                    let depths = [SplatOutput::FrontDepth, SplatOutput::BackDepth];
+                    let pipelines = (depths.map(id), id(SplatOutput::Merge));
+                    kept.state
+                        .record(ctx, (&splats, class), of, target, pipelines);
                 }
             }
+            // For the debug view that shows it.
+            let counted = kept.id(surface, |key| matches!(key.output, SplatOutput::Count(_)));
+            let pass = SplatPass::sum(SPAN, &layers.overdraw, counted);
+            splats.record(ctx, of, pass, &[Class::Bulk, Class::Spray]);
         }
     });
-}
-
-/// The splats of one class of a surface.
-struct ClassDraw<'a, 'w, 's> {
-    surface: &'a Surface,
-    frame: &'a Frame,
-    plan: &'a Plan,
-    splats: &'a Splats<'w, 's>,
-    class: Class,
-}
-
-impl ClassDraw<'_, '_, '_> {
-    /// A pass with one attachment.
-    fn record(
-        &self,
-        ctx: &mut RenderContext,
-        color: Option<RenderPassColorAttachment>,
-        depth: Option<RenderPassDepthStencilAttachment>,
-        pipeline: CachedRenderPipelineId,
-    ) {
-        if let Some(pipeline) = self.splats.cache.get_render_pipeline(pipeline) {
-            let colors = [color];
-            let colors = if colors[0].is_some() {
-                &colors[..]
-            } else {
-                &[]
-            };
-            let mut pass = self.frame.begin(ctx, SPAN, colors, depth, pipeline);
-            self.splats
-                .draw(&mut pass, self.surface, self.plan, self.class);
-        }
-    }
 }

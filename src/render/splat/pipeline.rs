@@ -4,22 +4,22 @@ use bevy::{
     asset::load_embedded_asset,
     prelude::*,
     render::render_resource::{
-        CachedRenderPipelineId, ColorWrites, CompareFunction, DepthStencilState,
-        RenderPipelineDescriptor, SpecializedRenderPipeline, TextureFormat,
+        ColorWrites, CompareFunction, RenderPipelineDescriptor, SpecializedRenderPipeline,
+        TextureFormat,
     },
 };
 
 use super::{
     super::{
         frame::{
-            FrameLayout, Stage,
-            pipelines::{MAX_BLEND, SUM_BLEND, defs, fragment},
+            FrameLayout, Inputs, Layers, NoUniform, Stage,
+            pipelines::{MAX_BLEND, SUM_BLEND, defs, depth_state, fragment},
             splats::{SplatLayouts, splat_pipeline},
             support::{FluidSupport, LAYER_FORMAT},
         },
-        surface::Variant,
+        surface::{Surface, Variant},
     },
-    depth_draws::DEPTH_FORMAT,
+    depth_draws::{DepthTextures, Merge},
 };
 use crate::settings::FluidDebugView;
 
@@ -34,6 +34,8 @@ pub(crate) enum SplatOutput {
     FrontDepth,
     /// The farthest back, by the depth test.
     BackDepth,
+    /// Both depths, from two textures of them.
+    Merge,
     /// The number of splats, summed up in a texture of this format.
     Count(TextureFormat),
 }
@@ -54,22 +56,21 @@ pub(crate) struct SplatPipeline {
     max_blend: bool,
     sum_format: TextureFormat,
     shader: Handle<Shader>,
+    merge: Merge,
 }
 
-pub(super) fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    splats: Res<SplatLayouts>,
-    support: Res<FluidSupport>,
-) {
-    commands.insert_resource(SplatPipeline {
-        frame: frame.clone(),
-        splats: splats.clone(),
-        max_blend: support.max_blend,
-        sum_format: support.thickness_format,
-        shader: load_embedded_asset!(assets.as_ref(), "splat.wgsl"),
-    });
+impl FromWorld for SplatPipeline {
+    fn from_world(world: &mut World) -> Self {
+        let support = world.resource::<FluidSupport>();
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            splats: world.resource::<SplatLayouts>().clone(),
+            max_blend: support.max_blend,
+            sum_format: support.thickness_format,
+            shader: load_embedded_asset!(world, "splat.wgsl"),
+            merge: Merge::from_world(world),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for SplatPipeline {
@@ -91,6 +92,7 @@ impl SpecializedRenderPipeline for SplatPipeline {
             SplatOutput::FrontDepth => (&[], MAX_BLEND, Some(CompareFunction::Greater)),
             SplatOutput::BackDepth => (&[], MAX_BLEND, Some(CompareFunction::Less)),
             SplatOutput::Count(format) => (&[format], SUM_BLEND, None),
+            SplatOutput::Merge => return self.merge.descriptor(),
         };
         let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(blend));
         if output == SplatOutput::Fronts {
@@ -99,13 +101,7 @@ impl SpecializedRenderPipeline for SplatPipeline {
             }
         }
         RenderPipelineDescriptor {
-            depth_stencil: compare.map(|compare| DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(compare),
-                stencil: default(),
-                bias: default(),
-            }),
+            depth_stencil: compare.and_then(|compare| depth_state(true, compare)),
             ..splat_pipeline(
                 "fluid_splat_pipeline",
                 &self.frame,
@@ -118,56 +114,41 @@ impl SpecializedRenderPipeline for SplatPipeline {
     }
 }
 
-/// The pipelines of a surface's layers.
-pub(crate) struct SplatPipelines {
-    pub(super) layers: LayerDraws,
-    /// For the debug view that shows it.
-    pub(super) overdraw: Option<CachedRenderPipelineId>,
-}
-
-pub(super) enum LayerDraws {
-    MaxBlend(CachedRenderPipelineId),
-    DepthDraws {
-        front: CachedRenderPipelineId,
-        /// `None` where nothing is seen through the surface.
-        back: Option<CachedRenderPipelineId>,
-    },
-}
-
 impl Stage for SplatPipeline {
-    type Pipelines = SplatPipelines;
+    type Uniform = NoUniform;
+    type State = DepthTextures;
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(SplatKey) -> CachedRenderPipelineId,
-    ) -> SplatPipelines {
+    fn keys(&self, variant: &Variant) -> Vec<SplatKey> {
         let plan = &variant.plan;
-        // Both forms at once, so that neither has to be waited for when the near plane enters.
-        let mut draw = |output| {
-            let [whole, any] = [false, true].map(|cut| request(SplatKey { output, cut }));
-            if plan.cut { any } else { whole }
+        let layers: &[_] = match (self.max_blend, plan.backs()) {
+            (true, true) => &[SplatOutput::Layers],
+            (true, false) => &[SplatOutput::Fronts],
+            (false, true) => &[SplatOutput::FrontDepth, SplatOutput::BackDepth],
+            (false, false) => &[SplatOutput::FrontDepth],
         };
-        let layers = match (self.max_blend, plan.backs()) {
-            (true, true) => LayerDraws::MaxBlend(draw(SplatOutput::Layers)),
-            (true, false) => LayerDraws::MaxBlend(draw(SplatOutput::Fronts)),
-            (false, backs) => LayerDraws::DepthDraws {
-                front: draw(SplatOutput::FrontDepth),
-                back: backs.then(|| draw(SplatOutput::BackDepth)),
-            },
-        };
+        let merge = (!self.max_blend).then_some(SplatOutput::Merge);
         let counted = variant.debug_view == Some(FluidDebugView::Overdraw);
-        SplatPipelines {
-            layers,
-            overdraw: counted.then(|| draw(SplatOutput::Count(self.sum_format))),
-        }
+        let count = counted.then_some(SplatOutput::Count(self.sum_format));
+        let outputs = layers.iter().copied().chain(merge).chain(count);
+        let key = |output| SplatKey {
+            output,
+            cut: plan.cut && output != SplatOutput::Merge,
+        };
+        outputs.map(key).collect()
     }
 
-    fn ids(pipelines: &SplatPipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        let (first, second) = match pipelines.layers {
-            LayerDraws::MaxBlend(id) => (id, None),
-            LayerDraws::DepthDraws { front, back } => (front, back),
-        };
-        [first].into_iter().chain(second).chain(pipelines.overdraw)
+    /// The near plane may cut splats at any time.
+    fn ahead(key: &SplatKey) -> Option<SplatKey> {
+        let splats = key.output != SplatOutput::Merge;
+        splats.then_some(SplatKey {
+            cut: !key.cut,
+            ..*key
+        })
+    }
+
+    fn prepare(&self, textures: &mut DepthTextures, _: &Surface, layers: &Layers, inputs: &Inputs) {
+        if !self.max_blend {
+            textures.prepare(&self.merge, layers, inputs.gpu);
+        }
     }
 }

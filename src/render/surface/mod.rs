@@ -27,6 +27,10 @@ pub(crate) use self::{
 };
 use crate::{settings::ScreenSpaceFluid, source::particles::FluidParticles};
 
+/// Texels on each side of a surface's textures that are never drawn to, so that all that reads beyond
+/// finds nothing.
+pub(crate) const MARGIN: u32 = 2;
+
 /// The steps that prepare surfaces for drawing, in this order, in
 /// [`RenderSystems::PrepareResources`]. Bind groups follow in [`RenderSystems::PrepareBindGroups`].
 #[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
@@ -83,7 +87,8 @@ pub(crate) struct DrawnFluid {
     pub(crate) spray: u32,
 }
 
-/// The surfaces of a view; a view without any lacks this component.
+/// The surfaces of a view; a view without any lacks this component, and all that stages require
+/// with it.
 #[derive(Component)]
 pub struct ViewSurfaces {
     /// Entities with a [`Surface`], from far to near.
@@ -153,9 +158,16 @@ pub(crate) fn plugin<M>(app: &mut App, shortcuts: bool, can_draw: impl SystemCon
 }
 
 /// Everything of a lost device is dropped; the next frame makes it anew.
-fn forget_surfaces(surfaces: Query<Entity, With<Surface>>, mut commands: Commands) {
+fn forget_surfaces(
+    surfaces: Query<Entity, With<Surface>>,
+    views: Query<Entity, With<ViewSurfaces>>,
+    mut commands: Commands,
+) {
     for surface in &surfaces {
         commands.entity(surface).despawn();
+    }
+    for view in &views {
+        commands.entity(view).remove_with_requires::<ViewSurfaces>();
     }
 }
 

@@ -4,11 +4,11 @@ use bevy::{
     camera::MainPassResolutionOverride,
     math::{Affine3A, Vec3A},
     prelude::*,
-    render::{camera::ExtractedCamera, view::ExtractedView},
+    render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
 };
 
 use super::{
-    DrawnFluid, GpuSurface, Shortcuts, Surface, Variant, ViewSurfaces,
+    DrawnFluid, GpuSurface, MARGIN, Shortcuts, Surface, Variant, ViewSurfaces,
     bounds::{Bounds, sort_far_to_near},
     fluids::{ExtractedFluid, mean_scale},
     grouping::{Group, Member, group},
@@ -44,10 +44,12 @@ pub(super) fn prepare_surfaces(
     fluids: Query<(Entity, &ExtractedFluid)>,
     shortcuts: Res<Shortcuts>,
     reporter: Reporter,
+    device: Res<RenderDevice>,
     mut scratch: Local<Scratch>,
 ) {
     let scratch = &mut *scratch;
     let mut report = reporter.begin();
+    let largest = UVec2::splat(device.limits().max_texture_dimension_2d - 2 * MARGIN);
     scratch.seen.clear();
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
@@ -83,6 +85,8 @@ pub(super) fn prepare_surfaces(
             let members = &scratch.members[members.clone()];
             let material = members[0].material;
             let rect = bounds.rect(&eye.clip_from_eye, viewport.zw());
+            // A target as large as any texture loses some pixels to the margin.
+            let rect = rect.map(|it| URect::from_corners(it.min, it.max.min(it.min + largest)));
             let count = |of: fn(&DrawnFluid) -> u32| {
                 members.iter().map(|member| of(&member.fluid)).sum::<u32>()
             };
@@ -174,7 +178,7 @@ pub(super) fn prepare_surfaces(
     }
     // Also of cameras that no longer draw fluids or are inactive.
     for (view, _) in painted.iter().filter(|(_, it)| it.surfaces.is_empty()) {
-        commands.entity(view).remove::<ViewSurfaces>();
+        commands.entity(view).remove_with_requires::<ViewSurfaces>();
     }
     for (surface, _) in &surfaces {
         if !scratch.seen.contains(&surface) {

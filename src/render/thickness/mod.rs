@@ -4,20 +4,16 @@ use bevy::{
     asset::{embedded_asset, load_embedded_asset},
     prelude::*,
     render::{
-        RenderApp, RenderStartup,
-        render_resource::{
-            CachedRenderPipelineId, RenderPipelineDescriptor, SpecializedRenderPipeline,
-            TextureFormat,
-        },
+        render_resource::{RenderPipelineDescriptor, SpecializedRenderPipeline, TextureFormat},
         renderer::{RenderContext, ViewQuery},
     },
 };
 
 use super::{
     frame::{
-        Frame, FrameLayout, FrameStartup, Kept, Layers, Stage, add_stage,
+        Frame, FrameLayout, Kept, Layers, NoUniform, Stage, add_stage,
         pipelines::{SUM_BLEND, defs, fragment},
-        splats::{Class, SplatLayouts, Splats, splat_pipeline},
+        splats::{Class, SplatLayouts, SplatPass, Splats, splat_pipeline},
         support::FluidSupport,
         timed,
     },
@@ -37,26 +33,18 @@ pub(super) struct ThicknessPipeline {
 
 pub(super) fn plugin(app: &mut App) {
     embedded_asset!(app, "thickness.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app.add_systems(RenderStartup, init_pipeline.after(FrameStartup));
-    add_stage::<ThicknessPipeline>(render_app);
+    add_stage::<ThicknessPipeline>(app);
 }
 
-fn init_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    frame: Res<FrameLayout>,
-    splats: Res<SplatLayouts>,
-    support: Res<FluidSupport>,
-) {
-    commands.insert_resource(ThicknessPipeline {
-        frame: frame.clone(),
-        splats: splats.clone(),
-        format: support.thickness_format,
-        shader: load_embedded_asset!(assets.as_ref(), "thickness.wgsl"),
-    });
+impl FromWorld for ThicknessPipeline {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            frame: world.resource::<FrameLayout>().clone(),
+            splats: world.resource::<SplatLayouts>().clone(),
+            format: world.resource::<FluidSupport>().thickness_format,
+            shader: load_embedded_asset!(world, "thickness.wgsl"),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for ThicknessPipeline {
@@ -78,18 +66,12 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
 }
 
 impl Stage for ThicknessPipeline {
-    type Pipelines = Option<CachedRenderPipelineId>;
+    type Uniform = NoUniform;
+    type State = ();
 
-    fn pipelines(
-        &self,
-        variant: &Variant,
-        mut request: impl FnMut(TextureFormat) -> CachedRenderPipelineId,
-    ) -> Option<CachedRenderPipelineId> {
-        variant.plan.accumulated.then(|| request(self.format))
-    }
-
-    fn ids(pipeline: &Self::Pipelines) -> impl Iterator<Item = CachedRenderPipelineId> {
-        pipeline.iter().copied()
+    fn keys(&self, variant: &Variant) -> Vec<TextureFormat> {
+        let format = variant.plan.accumulated.then_some(self.format);
+        format.into_iter().collect()
     }
 }
 
@@ -102,11 +84,10 @@ pub(super) fn thickness(
 ) {
     timed(&mut ctx, SPAN, |ctx| {
         let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
-        for (surface, frame, layers, pipeline) in surfaces {
-            if let Some(Some(pipeline)) = pipeline.drawn(surface) {
-                let (surface, target) = ((surface, frame), &layers.thickness);
-                splats.sum(ctx, SPAN, surface, target, *pipeline, &[Class::All]);
-            }
+        for (surface, frame, layers, kept) in surfaces {
+            let pipeline = kept.id(surface, |_| true);
+            let pass = SplatPass::sum(SPAN, &layers.thickness, pipeline);
+            splats.record(ctx, (surface, frame), pass, &[Class::All]);
         }
     });
 }
