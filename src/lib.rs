@@ -96,6 +96,7 @@
 pub mod diagnostics;
 #[cfg(all(test, feature = "published"))]
 mod every_setting;
+mod fog;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod material;
@@ -108,6 +109,7 @@ mod schedule;
 pub mod settings;
 pub mod shape;
 mod source;
+mod suns;
 
 #[cfg(doc)]
 use crate::prelude::*;

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     particles::ShapedFluid,
-    render::{PlanReports, Skipped, SurfaceReport},
+    render::{PlanReports, Skipped, SurfaceReport, Waiting},
 };
 
 /// A section; it shows the report of the last frames for which one was requested.
@@ -59,6 +59,14 @@ fn show_body(
         .and_then(|presets| presets.name_of(&surface.material))
         .unwrap_or("custom material");
     ui.label(RichText::new(format!("{} ({material})", names.join(", "))).strong());
+    if let Some(Waiting { stage, failed }) = surface.waiting {
+        let why = if failed {
+            "its pipeline cannot be made: see the log"
+        } else {
+            "its pipeline is being compiled"
+        };
+        line(ui, stage, why);
+    }
     for Skipped { work, why } in &surface.skipped {
         line(ui, work, why);
     }

@@ -1,5 +1,6 @@
 //! The order of the stages from splats to picture; all but the last run ahead of Bevy's main pass.
 
+mod bevy_passes;
 mod composite;
 mod debug_view;
 mod frame;
@@ -11,12 +12,14 @@ mod scene_depth;
 mod shader_tests;
 mod smooth;
 mod splat;
+mod stacked;
 mod surface;
 #[cfg(all(test, feature = "published"))]
 mod tests;
 mod thickness;
 
 use bevy::{
+    camera::CameraUpdateSystems,
     core_pipeline::{
         Core3d, Core3dSystems,
         core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
@@ -32,7 +35,7 @@ pub use self::{
     surface::{
         Surface, ViewSurfaces,
         plan::{MediumTerms, Plan, PlanInput, plan},
-        reasons::{PlanReports, Skipped, SurfaceReport, ViewReport, skipped},
+        reasons::{PlanReports, Skipped, SurfaceReport, ViewReport, Waiting, skipped},
     },
 };
 
@@ -63,7 +66,8 @@ pub enum FluidPasses {
     Normals,
     /// Rays are traced through the layers.
     Refract,
-    /// The liquid is composited over the opaque scene.
+    /// The liquid is composited over the opaque scene, and over glass and transparent objects behind
+    /// it.
     Composite,
 }
 
@@ -86,6 +90,10 @@ impl Plugin for FluidRenderPlugin {
         refract::plugin(app);
         composite::plugin(app);
         debug_view::plugin(app);
+        app.add_systems(
+            PostUpdate,
+            stacked::share_targets.before(CameraUpdateSystems),
+        );
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
@@ -105,13 +113,21 @@ impl Plugin for FluidRenderPlugin {
                     .chain()
                     .after(Core3dSystems::Prepass)
                     .before(Core3dSystems::MainPass),
-                (composite::composite, debug_view::debug_view)
+                (
+                    composite::take_behind,
+                    composite::composite,
+                    debug_view::debug_view,
+                )
                     .chain()
                     .in_set(FluidPasses::Composite)
                     .in_set(Core3dSystems::MainPass)
                     .after(main_opaque_pass_3d)
-                    .after(main_transmissive_pass_3d)
+                    .before(main_transmissive_pass_3d)
                     .before(main_transparent_pass_3d),
+                composite::give_back
+                    .in_set(Core3dSystems::MainPass)
+                    .after(main_transmissive_pass_3d)
+                    .after(main_transparent_pass_3d),
             ),
         );
         #[cfg(feature = "published")]
@@ -121,5 +137,11 @@ impl Plugin for FluidRenderPlugin {
                 .after(smooth::smooth)
                 .in_set(FluidPasses::Smooth),
         );
+    }
+
+    fn finish(&self, app: &mut App) {
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            bevy_passes::order(render_app);
+        }
     }
 }

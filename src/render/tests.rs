@@ -220,6 +220,7 @@ fn a_medium_without_terms_costs_nothing() {
         radius: 0.1,
         material: FluidMaterial::CLEAR_WATER,
         shortcuts: true,
+        scene_depth: true,
         settings: ScreenSpaceFluid::DEFAULT,
     };
     let key = |material| {

@@ -62,6 +62,8 @@ fn values(data: &TextureData, x: u32, y: u32) -> Vec<f32> {
                 .into()
         }
         TextureFormat::Rgba16Float => data.f16x4(x, y).into(),
+        // The target of a camera without high dynamic range.
+        TextureFormat::Rgba8UnormSrgb => data.u8x4(x, y).map(f32::from).into(),
         // Only the depth of an exit ray is a float.
         TextureFormat::Rgba32Uint => vec![f32::from_bits(data.u32x4(x, y)[1])],
         format => panic!("{format:?} is not looked at"),

@@ -1,6 +1,6 @@
 //! What happens where there is no device, or it goes away. What a device may lack is decided, and its
-//! absence forced, in `src/render/frame/support.rs` and `tests/gpu/layers/equal.rs`: Bevy itself does not start
-//! on devices that lack so much.
+//! absence forced, in `src/render/frame/support.rs` and `tests/gpu/layers/equal.rs`: Bevy itself does
+//! not start on devices that lack so much.
 
 use crate::common::*;
 use bevy::{
@@ -87,6 +87,24 @@ fn a_lost_device_is_survived() {
     assert!(app.world().resource::<Assets<Image>>().contains(&stage));
     assert_sound(&app);
     assert!(view_surfaces(&app).is_some());
+    assert!(capture(&mut app).unwrap() == before);
+}
+
+/// The textures of a view, for samples and for several surfaces, are of the device too.
+#[test]
+fn a_lost_device_is_survived_by_several_surfaces_in_a_multisampled_view() {
+    let mut app = show(&VIEW, ScreenSpaceFluid::default(), |world| {
+        scene(world);
+        world.spawn((
+            fluid(&[vec3(0.0, 0.0, -3.0)], 0.4, BULK),
+            FluidMaterial::MILK,
+        ));
+    });
+    look(&mut app, Msaa::Sample4);
+    let before = capture(&mut app).unwrap();
+    lose_device(&mut app);
+    assert_sound(&app);
+    assert_eq!(surfaces(&app).len(), 2);
     assert!(capture(&mut app).unwrap() == before);
 }
 

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod citizen;
 mod debug_views;
 mod fallbacks;
 mod frames;

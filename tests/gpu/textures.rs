@@ -108,3 +108,24 @@ fn textures_follow_a_surface_and_are_freed_with_it() {
     let (_, layers) = surface(&app);
     assert!(Layers::bulk(layers).is_none() && layers.spray().is_some());
 }
+
+/// Those of the view as well: the scene's depth, resolved, and its colour before any surface.
+#[test]
+fn a_view_that_turns_away_keeps_no_textures() {
+    let mut app = show(&VIEW, ScreenSpaceFluid::default(), |world| {
+        pool(world);
+        world.spawn((
+            fluid(&[vec3(0.0, 0.0, -1.0)], 0.1, BULK),
+            FluidMaterial::MILK,
+        ));
+    });
+    look(&mut app, Msaa::Sample4);
+    let seen = bytes(&app);
+    look(
+        &mut app,
+        Transform::from_rotation(Quat::from_rotation_y(3.1)),
+    );
+    assert_eq!(bytes(&app), 0.0);
+    look(&mut app, Transform::default());
+    assert_eq!(bytes(&app), seen);
+}

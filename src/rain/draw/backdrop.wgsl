@@ -1,7 +1,7 @@
 // Extinction and radiance of the rain beyond the streaks, and of rain seen so steeply that drops
 // are points.
 
-#import bevy_fluid::rain::draw::common::{over, rain, scene_view_depth, surroundings, view}
+#import bevy_fluid::rain::draw::common::{in_fog, over, rain, scene_view_depth, surroundings, view}
 #import bevy_fluid::rain::draw::types::STEEPEST
 #import bevy_render::view::frag_coord_to_ndc
 
@@ -35,5 +35,5 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if opacity <= 0.0 {
         discard;
     }
-    return over(surroundings(ray), opacity);
+    return over(in_fog(surroundings(ray), ray * rain.distance, ray), opacity);
 }

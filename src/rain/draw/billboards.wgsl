@@ -1,8 +1,8 @@
 // Streaks of the drops in a voxel, on a billboard that is aligned with the fall and faces the eye.
 
 #import bevy_fluid::rain::draw::common::{
-    clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
-    scene_view_depth, streak_sampler, streaks, surroundings, uniform_of,
+    clip_from_relative, in_fog, is_sheltered, lamplight, metres_per_pixel, over, pcg, rain,
+    ray_to, scene_view_depth, streak_sampler, streaks, surroundings, uniform_of,
 }
 #import bevy_fluid::rain::draw::types::{GpuRainLevel, STEEPEST, STREAK_TEXELS, VARIANTS, Voxel}
 
@@ -122,5 +122,5 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     if opacity < LEAST || is_sheltered(drop) {
         discard;
     }
-    return over(in.light + lamplight(drop, ray, in.lamps), opacity);
+    return over(in_fog(in.light + lamplight(drop, ray, in.lamps), drop, ray), opacity);
 }

@@ -3,14 +3,13 @@
 use bevy::{
     core_pipeline::core_3d::Transparent3d,
     ecs::{
-        query::ROQueryItem,
+        query::{ROQueryItem, With},
         system::{
             SystemParamItem,
             lifetimeless::{Read, SRes},
         },
     },
     render::{
-        camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
         render_phase::{
             PhaseItem, PhaseItemExtraIndex, RenderCommand, RenderCommandResult, SetItemPipeline,
@@ -26,13 +25,27 @@ use super::{
     buffers::RainBuffers,
     quads::{BACKDROP, DROPS, RainQuads},
 };
+use crate::render::ViewSurfaces;
 
 /// Copies the scene's depth, including liquids, before transparent objects are drawn.
 pub(crate) fn copy_scene_depth(
-    view: ViewQuery<(&RainQuads, &ViewDepthTexture, &ExtractedCamera)>,
+    view: ViewQuery<(&RainQuads, &ViewDepthTexture)>,
     mut ctx: RenderContext,
 ) {
-    let (quads, depth, _) = view.into_inner();
+    let (quads, depth) = view.into_inner();
+    copy(quads, depth, &mut ctx);
+}
+
+/// Copies the scene's depth without liquids, in views that draw some.
+pub(crate) fn copy_scene_depth_behind_liquid(
+    view: ViewQuery<(&RainQuads, &ViewDepthTexture), With<ViewSurfaces>>,
+    mut ctx: RenderContext,
+) {
+    let (quads, depth) = view.into_inner();
+    copy(quads, depth, &mut ctx);
+}
+
+fn copy(quads: &RainQuads, depth: &ViewDepthTexture, ctx: &mut RenderContext) {
     let (Some(copy), Some(_)) = (&quads.depth, &quads.bind_group) else {
         return;
     };

@@ -1,6 +1,7 @@
 // Bindings and lighting shared by all parts of rain.
 #define_import_path bevy_fluid::rain::draw::common
 
+#import bevy_fluid::fog::{fog_over, glow}
 #import bevy_fluid::rain::draw::types::GpuRain
 #import bevy_render::view::{View, frag_coord_to_ndc}
 
@@ -131,7 +132,19 @@ fn is_sheltered(position: vec3<f32>) -> bool {
     return false;
 }
 
+// Radiance from a position, exposed, as it arrives through the camera's fog.
+fn in_fog(radiance: vec3<f32>, position: vec3<f32>, ray: vec3<f32>) -> vec3<f32> {
+    var around_suns = vec3(0.0);
+#ifdef SUNS
+    for (var i = 0u; i < rain.sun_count; i += 1u) {
+        around_suns += glow(rain.fog, -rain.suns[i].direction, rain.suns[i].illuminance, ray);
+    }
+#endif
+    let fogged = fog_over(rain.fog, length(position), around_suns * view.exposure);
+    return radiance * (view.exposure * rain.brightness) * fogged.transmitted + fogged.added;
+}
+
 // Premultiplied colour, blended over the target.
-fn over(radiance: vec3<f32>, opacity: f32) -> vec4<f32> {
-    return vec4(radiance * (opacity * view.exposure * rain.brightness), opacity);
+fn over(color: vec3<f32>, opacity: f32) -> vec4<f32> {
+    return vec4(color * opacity, opacity);
 }

@@ -3,7 +3,7 @@
 
 #import bevy_fluid::rain::draw::births::diameter_of_birth
 #import bevy_fluid::rain::draw::common::{
-    PI, clip_from_relative, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
+    PI, clip_from_relative, in_fog, is_sheltered, lamplight, over, metres_per_pixel, pcg, rain, ray_to,
     scene_view_depth, surroundings, uniform_of, view,
 }
 #import bevy_fluid::rain::draw::types::{LARGEST, SPEED_STEP, Voxel}
@@ -112,7 +112,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let depth = 0.5 * (a.z / a.w + b.z / b.w);
     out.clip = vec4(pixel / screen, depth, 1.0);
     let ray = ray_to(middle);
-    out.color = surroundings(ray) + lamplight(middle, ray, cell.lamps);
+    out.color = in_fog(surroundings(ray) + lamplight(middle, ray, cell.lamps), middle, ray);
     return out;
 }
 

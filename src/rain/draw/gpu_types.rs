@@ -3,6 +3,8 @@
 use bevy::{prelude::*, render::render_resource::ShaderType};
 use bytemuck::{Pod, Zeroable};
 
+use crate::fog::GpuFog;
+
 /// Sizes of voxels: see [`lattice::LEVELS`](super::lattice::LEVELS).
 pub(crate) const LEVEL_COUNT: usize = 4;
 /// Maximum number of point and spot lights for a view's rain: those brightest at the camera.
@@ -76,6 +78,7 @@ pub(crate) struct GpuRain {
     pub(crate) lights: [GpuRainLight; MAX_LIGHTS],
     pub(crate) suns: [GpuRainSun; MAX_SUNS],
     pub(crate) shelters: [GpuShelter; MAX_SHELTERS],
+    pub(crate) fog: GpuFog,
 }
 
 /// A voxel with rain in it, of streaks or of drops: `Voxel` of `types.wgsl`.

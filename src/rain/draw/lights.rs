@@ -1,6 +1,7 @@
 //! The scene's lights, for rain.
 
 use bevy::{
+    camera::visibility::RenderLayers,
     pbr::{ExtractedDirectionalLight, ExtractedPointLight},
     prelude::*,
 };
@@ -9,6 +10,7 @@ use super::{
     gpu_types::{GpuRainLight, GpuRainSun, MAX_LIGHTS, MAX_SUNS},
     lattice::Eye,
 };
+use crate::suns::suns_in_view;
 
 /// Point and spot lights near a view, the brightest first.
 #[derive(Default)]
@@ -25,18 +27,21 @@ struct NearLight {
 }
 
 impl NearLights {
-    /// Collects the lights that reach the visible volume; the first [`MAX_LIGHTS`] count.
+    /// Collects the lights that a view with these layers sees and that reach the visible volume;
+    /// the first [`MAX_LIGHTS`] count.
     pub(crate) fn gather<'a>(
         &mut self,
-        lights: impl Iterator<Item = &'a ExtractedPointLight>,
+        lights: impl Iterator<Item = (&'a ExtractedPointLight, &'a RenderLayers)>,
+        view: &RenderLayers,
         place: Vec3,
         eye: &Eye,
     ) {
         self.lights.clear();
-        self.lights.extend(lights.filter_map(|light| {
+        self.lights.extend(lights.filter_map(|(light, layers)| {
             let position = light.transform.translation() - place;
             let away = position.length();
-            let seen = eye.is_reached_from(position, light.range)
+            let seen = layers.intersects(view)
+                && eye.is_reached_from(position, light.range)
                 && light.range > 0.0
                 && light.intensity > 0.0;
             seen.then(|| {
@@ -107,25 +112,17 @@ fn gpu_light(light: &ExtractedPointLight, position: Vec3) -> GpuRainLight {
     }
 }
 
-/// The brightest [`MAX_SUNS`] directional lights, and their number.
+/// The brightest suns that a view with these layers sees, and their number.
 pub(crate) fn suns<'a>(
-    lights: impl Iterator<Item = &'a ExtractedDirectionalLight>,
+    lights: impl Iterator<Item = (&'a ExtractedDirectionalLight, &'a RenderLayers)>,
+    view: &RenderLayers,
 ) -> ([GpuRainSun; MAX_SUNS], u32) {
-    let mut suns = [GpuRainSun::default(); MAX_SUNS];
-    let mut count = 0;
-    for light in lights {
-        let sun = GpuRainSun {
-            direction: light.transform.forward().into(),
-            illuminance: light.color.to_vec3() * light.illuminance,
-        };
-        // In its place among the others; the last one drops out.
-        let brightness = |sun: &GpuRainSun| sun.illuminance.max_element();
-        let at = suns[..count].partition_point(|other| brightness(other) >= brightness(&sun));
-        if at < MAX_SUNS {
-            count = (count + 1).min(MAX_SUNS);
-            suns[at..count].rotate_right(1);
-            suns[at] = sun;
-        }
-    }
-    (suns, count as u32)
+    let (suns, _) = suns_in_view(lights, view);
+    let lit = suns.iter().filter(|sun| sun.illuminance != Vec3::ZERO);
+    let count = lit.count() as u32;
+    let suns = suns.map(|sun| GpuRainSun {
+        direction: -sun.direction_to_light,
+        illuminance: sun.illuminance,
+    });
+    (suns, count)
 }

@@ -35,11 +35,13 @@ use bevy::{
 
 pub use self::quads::RainQuads;
 use super::{bake::LostDevices, settings::Rain};
+use crate::{fog::FogShaderPlugin, render::FluidPasses};
 
 pub(crate) struct RainDrawPlugin;
 
 impl Plugin for RainDrawPlugin {
     fn build(&self, app: &mut App) {
+        FogShaderPlugin::add(app);
         load_shader_library!(app, "types.wgsl");
         load_shader_library!(app, "births.wgsl");
         load_shader_library!(app, "common.wgsl");
@@ -84,12 +86,17 @@ impl Plugin for RainDrawPlugin {
             )
             .add_systems(
                 Core3d,
-                command::copy_scene_depth
-                    .in_set(Core3dSystems::MainPass)
-                    .after(main_opaque_pass_3d)
-                    .after(main_transmissive_pass_3d)
-                    .after(crate::render::FluidPasses::Composite)
-                    .before(main_transparent_pass_3d),
+                (
+                    // For what is drawn before the liquid.
+                    command::copy_scene_depth_behind_liquid
+                        .after(main_opaque_pass_3d)
+                        .before(FluidPasses::Composite),
+                    command::copy_scene_depth
+                        .after(main_transmissive_pass_3d)
+                        .after(FluidPasses::Composite)
+                        .before(main_transparent_pass_3d),
+                )
+                    .in_set(Core3dSystems::MainPass),
             );
     }
 }

@@ -7,11 +7,11 @@ use bevy::{
     prelude::*,
     render::{
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BlendComponent, BlendFactor,
-            BlendOperation, BlendState, ColorTargetState, ColorWrites, CompareFunction,
-            DepthStencilState, FragmentState, MultisampleState, PrimitiveState, PrimitiveTopology,
-            RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
-            TextureFormat, TextureSampleType, VertexState, VertexStepMode,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BlendState, ColorTargetState,
+            ColorWrites, CompareFunction, DepthStencilState, FragmentState, MultisampleState,
+            PrimitiveState, PrimitiveTopology, RenderPipelineDescriptor, SamplerBindingType,
+            ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType, VertexState,
+            VertexStepMode,
             binding_types::{
                 sampler, texture_2d_array, texture_cube, texture_depth_2d,
                 texture_depth_2d_multisampled, uniform_buffer,
@@ -104,20 +104,6 @@ pub(crate) fn init_rain_pipeline(mut commands: Commands, assets: Res<AssetServer
     });
 }
 
-/// Premultiplied colours, blended over the target; the target's alpha is kept.
-const OVER: BlendState = BlendState {
-    color: BlendComponent {
-        src_factor: BlendFactor::One,
-        dst_factor: BlendFactor::OneMinusSrcAlpha,
-        operation: BlendOperation::Add,
-    },
-    alpha: BlendComponent {
-        src_factor: BlendFactor::Zero,
-        dst_factor: BlendFactor::One,
-        operation: BlendOperation::Add,
-    },
-};
-
 impl SpecializedRenderPipeline for RainPipeline {
     type Key = RainKey;
 
@@ -188,7 +174,7 @@ impl SpecializedRenderPipeline for RainPipeline {
                 entry_point: Some("fragment".into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
-                    blend: Some(OVER),
+                    blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                     write_mask: ColorWrites::ALL,
                 })],
             }),

@@ -3,7 +3,7 @@
 use bevy::{
     camera::visibility::RenderLayers,
     core_pipeline::core_3d::{CORE_3D_DEPTH_FORMAT, Transparent3d, TransparentSortingInfo3d},
-    pbr::{ExtractedDirectionalLight, ExtractedPointLight},
+    pbr::{DistanceFog, ExtractedDirectionalLight, ExtractedPointLight},
     prelude::*,
     render::{
         camera::ExtractedCamera,
@@ -30,6 +30,7 @@ use super::{
     quads::{BACKDROP, DROPS, RainBindGroup, RainQuads},
     view::Plan,
 };
+use crate::{fog::GpuFog, render::ViewSurfaces};
 
 /// Enough for 200 mm/h, the highest rate.
 const MAX_DROPS: u32 = 6000;
@@ -42,8 +43,10 @@ pub(crate) fn queue_rain(
         &mut RainQuads,
         &Msaa,
         Option<&RenderLayers>,
+        Option<&DistanceFog>,
+        Has<ViewSurfaces>,
     )>,
-    lamps: Query<&ExtractedPointLight>,
+    lamps: Query<(&ExtractedPointLight, &RenderLayers)>,
     sun_lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
     mut shelters: ResMut<Shelters>,
     mut buffers: ResMut<RainBuffers>,
@@ -57,7 +60,7 @@ pub(crate) fn queue_rain(
     let buffers = &mut *buffers;
     buffers.uniforms.clear();
     let draw = functions.read().id::<DrawRain>();
-    for (view, extracted, mut quads, msaa, layers) in &mut views {
+    for (view, extracted, mut quads, msaa, layers, fog, liquid) in &mut views {
         let quads = &mut *quads;
         quads.instances.clear();
         quads.shells.clear();
@@ -78,10 +81,10 @@ pub(crate) fn queue_rain(
         let mut gpu = GpuRain::new(extracted, &plan, &view.world_from_view, &eye, axis);
         gpu.shelter(&mut shelters, place);
         let layers = layers.unwrap_or_default();
-        let suns_in_view = sun_lights.iter().filter(|(_, of)| of.intersects(layers));
-        (gpu.suns, gpu.sun_count) = suns(suns_in_view.map(|(light, _)| light));
-        buffers.near.gather(lamps.iter(), place, &eye);
+        (gpu.suns, gpu.sun_count) = suns(sun_lights.iter(), layers);
+        buffers.near.gather(lamps.iter(), layers, place, &eye);
         gpu.lights = buffers.near.gpu();
+        gpu.fog = GpuFog::new(fog);
         if let Some(map) = environment_of(extracted, &images) {
             // Cubemaps are left-handed.
             gpu.environment_from_world =
@@ -120,7 +123,7 @@ pub(crate) fn queue_rain(
             )
         });
         let voxels = quads.instances.len();
-        quads.cut_shells(rain.distance, phase.items.is_empty());
+        quads.cut_shells(rain.distance, phase.items.is_empty() && !liquid);
         if plan.drops_end > 0.0 {
             let cells = if plan.levels.is_some() {
                 NEAR_CELLS

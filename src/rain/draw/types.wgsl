@@ -1,5 +1,7 @@
 #define_import_path bevy_fluid::rain::draw::types
 
+#import bevy_fluid::fog::Fog
+
 // Positions are relative to the eye, in metres along the world's axes.
 
 struct GpuRainLevel {
@@ -80,6 +82,7 @@ struct GpuRain {
     lights: array<GpuRainLight, 32>,
     suns: array<GpuRainSun, 4>,
     shelters: array<GpuShelter, 8>,
+    fog: Fog,
 }
 
 const VARIANTS: u32 = 8u;

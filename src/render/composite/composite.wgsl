@@ -3,9 +3,9 @@
 #import bevy_fluid::render::frame::{frame, surface, view}
 #import bevy_fluid::render::functions::{
     decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth,
-    pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
+    ndc_from_pixel, pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
 }
-#import bevy_fluid::render::optics::environment
+#import bevy_fluid::render::optics::{environment, fogged, lighting}
 #import bevy_fluid::render::types::INSIDE_FRONT
 
 // Radiance, and the transmitted fraction of red.
@@ -35,41 +35,47 @@ const STEP_PIXELS: f32 = 6.0;
 const MAX_STEPS: f32 = 32.0;
 const HALVINGS: i32 = 4;
 
-fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec3<f32> {
+fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec4<f32> {
     // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
     let inside = clamp(pixel, vec2(0.5), frame.view_size - 0.5) + frame.view_origin;
     let uv = inside / vec2<f32>(textureDimensions(scene));
-    return textureSampleLevel(scene, scene_sampler, uv, 0.0).rgb;
+    return textureSampleLevel(scene, scene_sampler, uv, 0.0);
 }
 
-fn color_at(pixel: vec2<f32>) -> vec3<f32> {
+// The scene's premultiplied colour and its alpha.
+fn color_at(pixel: vec2<f32>) -> vec4<f32> {
     return color_in(scene_color, pixel);
 }
 
-// The distant light along a ray that meets nothing opaque: the environment, or a surface painted
-// earlier. Surfaces are in no depth texture that could be searched; if the colour has changed where
-// the ray passes the next surface's centre, that colour is used.
-fn far_away(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+// A surface painted earlier. Surfaces are in no depth texture that could be searched; if the colour
+// has changed where the ray passes the next surface's centre, that colour is used.
+struct Painted {
+    is_there: bool,
+    color: vec4<f32>,
+}
+
+fn painted_behind(position: vec3<f32>, direction: vec3<f32>) -> Painted {
 #ifdef SEVERAL
     let t = dot(surface.behind.xyz - position, direction);
     let device = device_from_view(position + t * direction);
-    let is_there = (surface.behind.w > 0.0) & (t > 0.0);
-    if is_there && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
+    let is_ahead = (surface.behind.w > 0.0) & (t > 0.0);
+    if is_ahead && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
         let pixel = pixel_from_ndc(device.xy);
-        let painted = color_at(pixel);
-        if nearest_scene_depth(vec2<i32>(pixel)) <= 0.0
-            && any(painted != color_in(scene_before, pixel)) {
-            return painted;
-        }
+        let color = color_at(pixel);
+        let is_there = nearest_scene_depth(vec2<i32>(pixel)) <= 0.0
+            && any(color != color_in(scene_before, pixel));
+        return Painted(is_there, color);
     }
 #endif
-    return environment(direction);
+    return Painted(false, vec4(0.0));
 }
 
 // The end of a ray on screen, where it leaves the viewport or comes to its vanishing point.
 struct Track {
     start: vec3<f32>,
     end: vec3<f32>,
+    // Whether it comes to its vanishing point there.
+    vanishes: bool,
 }
 
 // Along a ray the screen position and the device depth are affine in each other.
@@ -88,12 +94,13 @@ fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
             end = start;
         }
     }
+    let recedes = clip.w > 1e-6 || (clip.w >= 0.0 && clip.z < 0.0);
     let way = end - start;
     // Distance to the border along each axis, as a fraction of the way.
     let border = select(vec2(-1.0), vec2(1.0), way.xy >= vec2(0.0));
     let reach = select(vec2(1e9), (border - start.xy) / way.xy, abs(way.xy) > vec2(1e-9));
     let fraction = clamp(min(reach.x, reach.y), 0.0, 1.0);
-    return Track(start, start + fraction * way);
+    return Track(start, start + fraction * way, recedes && fraction >= 1.0);
 }
 
 // A track on screen: (pixel, device depth) at its start, and the way to its end.
@@ -136,44 +143,77 @@ fn meeting_on(way: Way, low: vec2<f32>, high: vec2<f32>) -> f32 {
     return ends.y;
 }
 
-// The scene's colour where the ray meets its depth, else the environment.
-fn background(position: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+// The scene's colour where the ray meets its depth. A ray that meets nothing up to its vanishing
+// point shows what is on screen there: the sky, or whatever has no depth, such as glass. `straight`
+// is the pixel itself, for rays that are lost behind something near the eye.
+fn background(straight: vec2<f32>, position: vec3<f32>, direction: vec3<f32>) -> vec4<f32> {
     let track = track(position, direction);
     let way = way_of(track);
     let steps = clamp(ceil(length(way.step.xy) / STEP_PIXELS), 4.0, MAX_STEPS);
-    // (s, gap)
+    // (s, gap) where the ray was last in sight.
     var before = vec2(0.0, gap_on(way, 0.0));
+    var hidden = false;
     for (var i = 1.0; i <= steps; i += 1.0) {
         let at = vec2(i / steps, gap_on(way, i / steps));
-        if at.y > 0.0 {
-            let map = depth_map(track.start.xy);
-            let entry = view_depth(map, way.start.z + before.x * way.step.z);
-            let slack = 4.0 * surface.radius + 0.05 * entry;
-            // It is met if it lies within the step, not if it covers the ray from nearer the eye.
-            let scene_depth = at.y + way.start.z + at.x * way.step.z;
-            if view_depth(map, scene_depth) >= entry - slack {
-                // At the start it may be behind already.
-                let low = vec2(before.x, min(before.y, -1e-9));
-                return color_at(way.start.xy + meeting_on(way, low, at) * way.step.xy);
-            }
+        if at.y <= 0.0 {
+            before = at;
+            hidden = false;
+            continue;
         }
-        before = at;
+        let map = depth_map(track.start.xy);
+        let entry = view_depth(map, way.start.z + before.x * way.step.z);
+        let slack = 4.0 * surface.radius + 0.05 * entry;
+        // It is met if it lies within the step, not if it covers the ray from nearer the eye.
+        let scene_depth = at.y + way.start.z + at.x * way.step.z;
+        if view_depth(map, scene_depth) < entry - slack {
+            hidden = true;
+            continue;
+        }
+        if hidden {
+            // Somewhere behind the thing that covers the ray.
+            return color_at(way.start.xy + at.x * way.step.xy);
+        }
+        // At the start it may be behind already.
+        let low = vec2(before.x, min(before.y, -1e-9));
+        return color_at(way.start.xy + meeting_on(way, low, at) * way.step.xy);
     }
-    return far_away(position, direction);
+    let painted = painted_behind(position, direction);
+    if painted.is_there {
+        return painted.color;
+    }
+    if hidden {
+        return color_at(straight);
+    }
+    if track.vanishes {
+        return color_at(way.start.xy + way.step.xy);
+    }
+    let is_clear = lighting.environment_intensity <= 0.0;
+    return vec4(environment(direction), select(1.0, lighting.clear_color.a, is_clear));
 }
 
-// Light from the liquid, and background light transmitted through it.
-fn light(texel: vec2<i32>, exit: vec4<u32>) -> vec3<f32> {
+// Premultiplied light from the liquid and of the background through it. Alpha is what the liquid
+// takes from light of no colour, over the alpha of the background.
+fn light(pixel: vec2<f32>, texel: vec2<i32>, exit: vec4<u32>, front: f32) -> vec4<f32> {
     let uv = unpack2x16unorm(exit.x);
     let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
-    var behind: vec3<f32>;
+    var behind: vec4<f32>;
     if (exit.w & DIRECT) != 0u {
         behind = color_at(pixel_from_ndc(ndc));
     } else {
         let start = view_from_device(ndc, bitcast<f32>(exit.y));
-        behind = background(start, decode_normal(unpack2x16snorm(exit.z)));
+        behind = background(pixel, start, decode_normal(unpack2x16snorm(exit.z)));
     }
-    return textureLoad(radiance, texel, 0).rgb + transmitted_at(texel) * behind;
+    let own = textureLoad(radiance, texel, 0).rgb;
+    let transmitted = transmitted_at(texel);
+    // The fog before the liquid. What is behind is fogged as far as from the eye already, so that
+    // only the part of its light that the liquid takes is replaced by that of fog.
+    let is_outside = front < INSIDE_FRONT;
+    let position = select(vec3(0.0), view_from_device(ndc_from_pixel(pixel), front), is_outside);
+    let fog = fogged(position);
+    let color = own * fog.transmitted + fog.added * (1.0 - transmitted)
+        + transmitted * behind.rgb;
+    let taken = 1.0 - dot(transmitted, vec3(1.0 / 3.0));
+    return vec4(color, mix(behind.a, 1.0, taken));
 }
 
 fn transmitted_at(texel: vec2<i32>) -> vec3<f32> {
@@ -203,7 +243,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
 #endif
 #ifndef DEPTH_ALONE
-    out.color = vec4(light(texel, exit), 1.0);
+    out.color = light(vec2<f32>(pixel) + 0.5, texel, exit, front);
 #endif
     out.depth = front;
     if front >= INSIDE_FRONT {

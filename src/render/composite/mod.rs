@@ -1,22 +1,31 @@
 //! The liquid over the opaque scene, surfaces from far to near.
 
+mod behind;
 mod pipeline;
 mod scene;
 
 use bevy::{
     asset::embedded_asset,
+    core_pipeline::prepass::ViewPrepassTextures,
+    pbr::ViewTransmissionTexture,
     prelude::*,
     render::{
+        RenderApp,
+        camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ViewDepthTexture, ViewTarget},
     },
 };
 
+pub(super) use self::behind::{give_back, take_behind};
 pub(super) use self::pipeline::CompositePipeline;
 #[cfg(all(test, feature = "published"))]
 pub(super) use self::pipeline::{CompositeKey, CompositePart};
-use self::scene::SceneColor;
+use self::{
+    behind::{BehindLiquid, ViewItems},
+    scene::SceneColor,
+};
 use super::{
     frame::{Frame, Kept, add_stage, timed},
     lighting::ViewLighting,
@@ -30,39 +39,63 @@ pub(super) fn plugin(app: &mut App) {
     embedded_asset!(app, "composite.wgsl");
     add_stage::<CompositePipeline>(app);
     scene::plugin(app);
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.init_resource::<BehindLiquid>();
+    }
 }
 
 type Composited<'a> = (&'a Surface, &'a Frame, &'a Kept<CompositePipeline>);
 
 /// The pass: all surfaces of the view, each composited over the previous ones.
 pub(super) fn composite(
+    world: &World,
     view: ViewQuery<(
+        &ExtractedCamera,
         &ViewTarget,
         &ViewDepthTexture,
+        Option<&ViewTransmissionTexture>,
+        Option<&ViewPrepassTextures>,
         &ViewSurfaces,
         &ViewLighting,
         &SceneColor,
     )>,
     surfaces: Query<Composited>,
+    behind: Res<BehindLiquid>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (target, depth, view, lighting, scene) = view.into_inner();
+    let entity = view.entity();
+    let (camera, target, depth, transmission, prepass, view, lighting, scene) = view.into_inner();
+    let items = ViewItems {
+        world,
+        entity,
+        camera,
+        target,
+        depth,
+        transmission,
+    };
     let drawn = |&(surface, ..): &Composited| {
         let variant = surface.drawn.as_ref();
         variant.is_some_and(|variant| variant.debug_view.is_none())
     };
-    let surfaces = || surfaces.iter_many(&view.surfaces).filter(drawn);
-    if surfaces().next().is_none() {
-        return;
-    }
+    let light = (lighting, scene, target);
     timed(&mut ctx, SPAN, |ctx| {
         let mut changed = view.viewport;
-        scene.keep(ctx, target, changed);
-        for surface in surfaces() {
+        let mut any = false;
+        for (index, surface) in surfaces.iter_many(&view.surfaces).enumerate() {
+            if behind.draw(ctx, &items, index) {
+                changed = view.viewport;
+            }
+            if !drawn(&surface) {
+                continue;
+            }
             let Some(pipeline) = surface.2.id(surface.0, |key| key.part.light()) else {
                 continue;
             };
+            if !any {
+                scene.keep(ctx, target, view.viewport);
+                any = true;
+            }
             // Rays leave the surface's own rectangle, so all that has changed may be needed.
             scene.copy(ctx, target, changed, &cache);
             changed = surface.1.camera_rect();
@@ -72,31 +105,26 @@ pub(super) fn composite(
                 depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
                 ..default()
             };
-            paint(
-                ctx,
-                pass,
-                surface,
-                pipeline,
-                (lighting, scene, target),
-                &cache,
-            );
+            paint(ctx, pass, surface, pipeline, light, &cache);
         }
-        for surface in surfaces() {
+        for surface in surfaces.iter_many(&view.surfaces).filter(drawn) {
             if let Some(pipeline) = surface.2.id(surface.0, |key| !key.part.light()) {
                 let pass = RenderPassDescriptor {
                     label: Some("fluid_composite_depth"),
                     depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
                     ..default()
                 };
-                paint(
-                    ctx,
-                    pass,
-                    surface,
-                    pipeline,
-                    (lighting, scene, target),
-                    &cache,
-                );
+                paint(ctx, pass, surface, pipeline, light, &cache);
             }
+        }
+        // Transparency that is independent of order, decals and soft particles read the prepass's
+        // depth, and must find the liquid in it.
+        if any && let Some(prepass) = prepass.and_then(|textures| textures.depth.as_ref()) {
+            ctx.command_encoder().copy_texture_to_texture(
+                depth.texture.as_image_copy(),
+                prepass.texture.texture.as_image_copy(),
+                depth.texture.size(),
+            );
         }
     });
 }

@@ -130,6 +130,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
 }
 
 impl Stage for CompositePipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = NoUniform;
     type State = Group;
 

@@ -16,10 +16,10 @@ use bevy::{
     },
 };
 
-use super::pipeline::CompositePipeline;
+use super::{SPAN, pipeline::CompositePipeline};
 use crate::render::{
     frame::{FrameLayout, Gpu, Group, Input, Target, ensure},
-    surface::{Surface, SurfaceSystems, ViewSurfaces},
+    surface::{Surface, SurfaceSystems, ViewSurfaces, reasons::Waiting},
 };
 
 /// A view's copies of the scene's colour.
@@ -74,7 +74,9 @@ fn wait_for_blit(
             };
             let id = specialized.specialize(&cache, &blit, key);
             scene.blit = Some(id);
-            surface.waiting |= cache.get_render_pipeline(id).is_none();
+            if cache.get_render_pipeline(id).is_none() {
+                surface.waiting = Some(Waiting::new(SPAN, id, &cache));
+            }
         }
     }
 }

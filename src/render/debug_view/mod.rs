@@ -110,6 +110,7 @@ impl SpecializedRenderPipeline for DebugPipeline {
 }
 
 impl Stage for DebugPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = Vec4;
     type State = Group;
 

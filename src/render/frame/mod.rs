@@ -54,10 +54,12 @@ pub(crate) struct GpuFrame {
 /// (nearest, farthest) of a pixel's samples, in device depth.
 pub(crate) const SCENE_DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 
-/// The opaque scene's depth in a multisampled view, resolved; others are read as they are.
+/// The opaque scene's depth in a multisampled view, resolved, or in a view without a prepass, where
+/// it is new and thus empty. Others are read as they are.
 #[derive(Component, Default)]
 pub(crate) struct SceneDepth {
     pub(crate) resolved: Option<Target>,
+    is_known: bool,
 }
 
 /// The layout of group 0, and the sampler of all that is filtered.
@@ -161,11 +163,18 @@ fn prepare_frames(
     frames.clear();
     uniforms.clear();
     for (view, view_offset, mut scene_depth) in &mut views {
-        let multisampled = view.samples > 1;
+        let resolves = view.resolves_depth();
+        let own = resolves || !view.scene_depth;
+        if scene_depth.is_known != view.scene_depth {
+            *scene_depth = SceneDepth {
+                resolved: None,
+                is_known: view.scene_depth,
+            };
+        }
         let size = view.viewport.size();
         ensure(
             &mut scene_depth.resolved,
-            multisampled,
+            own,
             &gpu,
             "fluid_scene_depth",
             size,
@@ -181,12 +190,12 @@ fn prepare_frames(
                 view_origin: view_origin.as_vec2(),
                 size: layers.size().as_ivec2(),
                 origin: layers.origin(),
-                scene_origin: if multisampled {
+                scene_origin: if own {
                     IVec2::ZERO
                 } else {
                     view_origin.as_ivec2()
                 },
-                multisampled: u32::from(multisampled),
+                multisampled: u32::from(resolves),
             });
             let of_surface = uniforms.push(surface.uniform);
             frame.place(
@@ -202,7 +211,7 @@ fn prepare_frames(
 }
 
 fn prepare_groups(
-    views: Query<(&ViewSurfaces, &ViewPrepassTextures, &SceneDepth)>,
+    views: Query<(&ViewSurfaces, Option<&ViewPrepassTextures>, &SceneDepth)>,
     mut surfaces: Query<(&mut Frame, &Layers)>,
     layout: Res<FrameLayout>,
     view_uniforms: Res<ViewUniforms>,
@@ -212,7 +221,8 @@ fn prepare_groups(
 ) {
     for (view, prepass, scene_depth) in &views {
         let resolved = scene_depth.resolved.as_ref().map(|it| &it.view);
-        let Some(scene_depth) = resolved.or(prepass.depth_view()) else {
+        let Some(scene_depth) = resolved.or(prepass.and_then(|prepass| prepass.depth_view()))
+        else {
             continue;
         };
         for &surface in &view.surfaces {

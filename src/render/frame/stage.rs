@@ -14,12 +14,14 @@ use bevy::{
 };
 
 use super::{FrameStartup, Gpu, Input, Layers, Offset, Placeholder, Target, UniformArray};
-use crate::render::surface::{Surface, SurfaceSystems, Variant};
+use crate::render::surface::{Surface, SurfaceSystems, Variant, reasons::Waiting};
 
 /// A stage; its resource makes its pipelines.
 pub(crate) trait Stage:
     SpecializedRenderPipeline<Key: Send + Sync> + Resource + FromWorld
 {
+    /// Of its passes.
+    const LABEL: &'static str;
     /// A surface's parameters.
     type Uniform: ShaderType + WriteInto + Copy + PartialEq + Send + Sync + 'static;
     /// A surface's bind groups, and textures that no other stage reads.
@@ -154,7 +156,7 @@ fn request<S: Stage>(
     mut surfaces: Query<(&mut Surface, &mut Kept<S>)>,
     stage: Res<S>,
     mut specialized: ResMut<SpecializedRenderPipelines<S>>,
-    cache: Res<PipelineCache>,
+    mut cache: ResMut<PipelineCache>,
 ) {
     for (mut surface, mut kept) in &mut surfaces {
         let needed = [Some(surface.wanted), surface.drawn];
@@ -172,10 +174,19 @@ fn request<S: Stage>(
             }
             kept.slots[spare] = Some(Slot { variant, pipelines });
         }
-        let is_compiled = |(_, id): &(_, _)| cache.get_render_pipeline(*id).is_some();
+        // What is drawn now cannot be drawn to the wanted target: better a slow frame than one
+        // without the liquid.
+        let vanishes = surface
+            .drawn
+            .is_some_and(|drawn| !drawn.fits(&surface.wanted));
         let wanted = kept.of(&surface.wanted);
-        if !wanted.is_some_and(|slot| slot.pipelines.iter().all(is_compiled)) {
-            surface.waiting = true;
+        for (_, id) in wanted.iter().flat_map(|slot| &slot.pipelines) {
+            if vanishes {
+                cache.block_on_render_pipeline(*id);
+            }
+            if cache.get_render_pipeline(*id).is_none() {
+                surface.waiting = Some(Waiting::new(S::LABEL, *id, &cache));
+            }
         }
     }
 }

@@ -71,6 +71,7 @@ impl SpecializedRenderPipeline for TilePipeline {
 }
 
 impl Stage for TilePipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = NoUniform;
     type State = Group;
 

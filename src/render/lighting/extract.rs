@@ -1,4 +1,4 @@
-//! Lights and surroundings of the main world.
+//! The surroundings of the main world.
 
 use bevy::{
     light::Skybox,
@@ -6,7 +6,6 @@ use bevy::{
     render::{Extract, sync_world::RenderEntity},
 };
 
-use super::{GpuDirectionalLight, MAX_LIGHTS};
 use crate::settings::ScreenSpaceFluid;
 
 /// A cubemap of the distant surroundings.
@@ -24,8 +23,8 @@ pub(super) struct EnvironmentMap {
 #[derive(Component, Clone, Default)]
 pub(super) struct ViewSurroundings {
     pub(super) map: Option<EnvironmentMap>,
-    /// The camera's own ambient light, cd/m².
-    pub(super) ambient: Option<Vec3>,
+    /// Ambient light: the camera's own, or the scene's. Unit: cd/m².
+    pub(super) ambient: Vec3,
 }
 
 pub(super) fn extract_surroundings(
@@ -40,6 +39,7 @@ pub(super) fn extract_surroundings(
             (With<Camera3d>, With<ScreenSpaceFluid>),
         >,
     >,
+    scene_ambient: Extract<Option<Res<GlobalAmbientLight>>>,
     mut views: Query<&mut ViewSurroundings>,
     mut commands: Commands,
 ) {
@@ -61,60 +61,18 @@ pub(super) fn extract_surroundings(
                     rotation: skybox.rotation,
                 })
             });
-        let ambient = ambient.map(|light| luminance(light.color, light.brightness));
+        let own = ambient.map(|light| (light.color, light.brightness));
+        let scene = scene_ambient.as_ref();
+        let ambient = own.or_else(|| scene.map(|light| (light.color, light.brightness)));
+        let ambient = ambient.map_or(Vec3::ZERO, |(color, brightness)| {
+            color.to_linear().to_vec3() * brightness
+        });
         let surroundings = ViewSurroundings { map, ambient };
         match views.get_mut(entity) {
             Ok(mut known) => *known = surroundings,
             Err(_) => {
                 commands.entity(entity).insert(surroundings);
             }
-        }
-    }
-}
-
-/// The scene's distant lights.
-#[derive(Resource, Default)]
-pub(super) struct FluidLights {
-    /// Unused slots are dark.
-    pub(super) lights: [GpuDirectionalLight; MAX_LIGHTS],
-    /// Mean over all directions of all directional lights, cd/m².
-    mean: Vec3,
-    /// Ambient light for cameras without their own, cd/m².
-    ambient: Vec3,
-}
-
-impl FluidLights {
-    /// The mean luminance over all directions, without environment maps; `ambient` is the camera's
-    /// own.
-    pub(super) fn even(&self, ambient: Option<Vec3>) -> Vec3 {
-        self.mean + ambient.unwrap_or(self.ambient)
-    }
-}
-
-fn luminance(color: Color, brightness: f32) -> Vec3 {
-    color.to_linear().to_vec3() * brightness
-}
-
-pub(super) fn extract_lights(
-    lights: Extract<Query<(&DirectionalLight, &GlobalTransform, &ViewVisibility)>>,
-    ambient: Extract<Option<Res<GlobalAmbientLight>>>,
-    mut extracted: ResMut<FluidLights>,
-) {
-    extracted.lights = default();
-    extracted.mean = Vec3::ZERO;
-    extracted.ambient = ambient
-        .as_ref()
-        .map_or(Vec3::ZERO, |light| luminance(light.color, light.brightness));
-    let visible = lights.iter().filter(|(_, _, visibility)| visibility.get());
-    for (slot, (light, transform, _)) in visible.enumerate() {
-        let illuminance = luminance(light.color, light.illuminance);
-        // The light from one direction, averaged over the sphere.
-        extracted.mean += illuminance / (4.0 * core::f32::consts::PI);
-        if let Some(slot) = extracted.lights.get_mut(slot) {
-            *slot = GpuDirectionalLight {
-                direction_to_light: transform.back().into(),
-                illuminance,
-            };
         }
     }
 }

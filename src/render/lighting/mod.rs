@@ -3,6 +3,8 @@
 mod extract;
 
 use bevy::{
+    camera::visibility::RenderLayers,
+    pbr::{DistanceFog, ExtractedDirectionalLight},
     prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
@@ -18,13 +20,17 @@ use bevy::{
     shader::load_shader_library,
 };
 
-use self::extract::{FluidLights, ViewSurroundings, extract_lights, extract_surroundings};
+use self::extract::{ViewSurroundings, extract_surroundings};
 use super::{
     frame::{FrameLayout, FrameStartup, Gpu, Group, Input, Offset, UniformArray},
-    surface::{SurfaceSystems, ViewSurfaces},
+    surface::{SurfaceSystems, ViewSurfaces, views::FluidView},
+};
+use crate::{
+    fog::{FogShaderPlugin, GpuFog},
+    suns::suns_in_view,
 };
 
-/// Directional lights that give highlights; further ones are left out.
+/// Directional lights that give highlights: the brightest.
 const MAX_LIGHTS: usize = 4;
 
 /// A light that gives highlights: `DirectionalLight` in `optics.wgsl`.
@@ -38,11 +44,12 @@ struct GpuDirectionalLight {
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
 struct GpuLighting {
     environment_from_world: Mat3,
-    clear_color: Vec3,
+    clear_color: Vec4,
     environment_intensity: f32,
     even_light: Vec3,
     diffuse_intensity: f32,
     lights: [GpuDirectionalLight; MAX_LIGHTS],
+    fog: GpuFog,
 }
 
 /// The layout of group 2 of passes that need light.
@@ -66,16 +73,16 @@ impl ViewLighting {
 }
 
 pub(super) fn plugin(app: &mut App) {
+    FogShaderPlugin::add(app);
     load_shader_library!(app, "medium.wgsl");
     load_shader_library!(app, "optics.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
     render_app
-        .init_resource::<FluidLights>()
         .init_gpu_resource::<UniformArray<GpuLighting>>()
         .add_systems(RenderStartup, init_layout.in_set(FrameStartup))
-        .add_systems(ExtractSchedule, (extract_lights, extract_surroundings))
+        .add_systems(ExtractSchedule, extract_surroundings)
         .add_systems(
             Render,
             (
@@ -106,10 +113,12 @@ fn init_layout(mut commands: Commands) {
 fn prepare_lighting(
     mut views: Query<(
         &ExtractedCamera,
+        &FluidView,
         Option<&ViewSurroundings>,
+        Option<&DistanceFog>,
         &mut ViewLighting,
     )>,
-    lights: Res<FluidLights>,
+    lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
     clear_color: Res<ClearColor>,
     images: Res<RenderAssets<GpuImage>>,
     mut uniforms: ResMut<UniformArray<GpuLighting>>,
@@ -120,16 +129,23 @@ fn prepare_lighting(
         image.is_some_and(|image| image.texture.depth_or_array_layers() == 6)
     };
     uniforms.clear();
-    for (camera, surroundings, mut lighting) in &mut views {
+    for (camera, view, surroundings, fog, mut lighting) in &mut views {
         let clear_color = match camera.clear_color {
             ClearColorConfig::Custom(color) => color,
             _ => clear_color.0,
         };
-        let ambient = surroundings.and_then(|it| it.ambient);
+        let (suns, sum) = suns_in_view(lights.iter(), &view.layers);
+        let ambient = surroundings.map_or(Vec3::ZERO, |it| it.ambient);
+        // The light from one direction, averaged over the sphere.
+        let even_light = sum / (4.0 * core::f32::consts::PI) + ambient;
         let mut light = GpuLighting {
-            clear_color: clear_color.to_linear().to_vec3(),
-            even_light: lights.even(ambient) * camera.exposure,
-            lights: lights.lights,
+            clear_color: clear_color.to_linear().to_vec4(),
+            even_light: even_light * camera.exposure,
+            lights: suns.map(|sun| GpuDirectionalLight {
+                direction_to_light: sun.direction_to_light,
+                illuminance: sun.illuminance,
+            }),
+            fog: GpuFog::new(fog),
             ..default()
         };
         lighting.cubemaps = default();

@@ -1,6 +1,7 @@
 // Light at an interface and beyond: Fresnel, refraction, highlights, the environment.
 #define_import_path bevy_fluid::render::optics
 
+#import bevy_fluid::fog::{Fog, Fogged, fog_over, glow}
 #import bevy_fluid::render::frame::{surface, view}
 
 const PI: f32 = 3.14159265;
@@ -18,7 +19,7 @@ struct Lighting {
     // World to cubemap, handedness included.
     environment_from_world: mat3x3<f32>,
     // Background without an environment map.
-    clear_color: vec3<f32>,
+    clear_color: vec4<f32>,
     // Turns texels of the environment map into the view's units; 0: there is none.
     environment_intensity: f32,
     // Mean over all directions of the light from lights and ambient, exposed.
@@ -27,6 +28,7 @@ struct Lighting {
     diffuse_intensity: f32,
     // Unused ones are all zero.
     lights: array<DirectionalLight, MAX_LIGHTS>,
+    fog: Fog,
 }
 
 @group(2) @binding(0) var<uniform> lighting: Lighting;
@@ -41,7 +43,7 @@ fn environment(direction: vec3<f32>) -> vec3<f32> {
         environment_map, environment_sampler, lighting.environment_from_world * world, 0.0,
     );
     let seen = texel.rgb * lighting.environment_intensity;
-    return select(lighting.clear_color, seen, lighting.environment_intensity > 0.0);
+    return select(lighting.clear_color.rgb, seen, lighting.environment_intensity > 0.0);
 }
 
 struct Interface {
@@ -127,4 +129,17 @@ fn even_light() -> vec3<f32> {
     }
     let around = select(vec3(0.0), sum / 6.0 * lighting.diffuse_intensity, lighting.diffuse_intensity > 0.0);
     return lighting.even_light + around;
+}
+
+// What the camera's fog does to light from a position in view space.
+fn fogged(position: vec3<f32>) -> Fogged {
+    let way = (view.world_from_view * vec4(position, 0.0)).xyz;
+    let distance = length(way);
+    let ray = way / max(distance, 1e-9);
+    var around_lights = vec3(0.0);
+    for (var i = 0u; i < MAX_LIGHTS; i += 1u) {
+        let light = lighting.lights[i];
+        around_lights += glow(lighting.fog, light.direction_to_light, light.illuminance, ray);
+    }
+    return fog_over(lighting.fog, distance, around_lights * view.exposure);
 }

@@ -76,6 +76,7 @@ impl SpecializedRenderPipeline for NormalsPipeline {
 }
 
 impl Stage for NormalsPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = NoUniform;
     /// The layers of bulk and spray that normals are computed from.
     type State = [Group; 2];

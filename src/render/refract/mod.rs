@@ -170,6 +170,7 @@ impl SpecializedRenderPipeline for RefractPipeline {
 }
 
 impl Stage for RefractPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = GpuTracing;
     type State = Group;
 

@@ -21,7 +21,7 @@ use super::{
         Frame, Gpu, GpuFrame, Group, Input, SCENE_DEPTH_FORMAT, SceneDepth, UniformArray, cleared,
         pipelines::fragment, timed,
     },
-    surface::{Surface, SurfaceSystems, ViewSurfaces},
+    surface::{Surface, SurfaceSystems, ViewSurfaces, reasons::Waiting},
 };
 
 /// Name of the pass's time span.
@@ -90,7 +90,9 @@ fn wait_for_pipeline(
         return;
     }
     for mut surface in &mut surfaces {
-        surface.waiting |= surface.wanted.samples > 1;
+        if surface.wanted.samples > 1 && surface.wanted.scene_depth {
+            surface.waiting = Some(Waiting::new(SPAN, pipeline.id, &cache));
+        }
     }
 }
 
@@ -101,7 +103,7 @@ fn prepare_groups(
     gpu: Gpu,
 ) {
     for (view, prepass, mut group) in &mut views {
-        if let Some(depth) = prepass.depth_view().filter(|_| view.samples > 1) {
+        if let Some(depth) = prepass.depth_view().filter(|_| view.resolves_depth()) {
             let inputs = [Input::view(depth), frames.input()];
             group
                 .0
@@ -120,6 +122,9 @@ pub(super) fn scene_depth(
 ) {
     let (view, scene_depth, group) = view.into_inner();
     // Any surface's frame tells where the view is.
+    if !view.resolves_depth() {
+        return;
+    }
     let (Some(frame), Some(target), Some(group), Some(pipeline)) = (
         frames.iter_many(&view.surfaces).next(),
         &scene_depth.resolved,

@@ -81,6 +81,7 @@ impl SpecializedRenderPipeline for AveragePipeline {
 }
 
 impl Stage for AveragePipeline {
+    const LABEL: &'static str = AVERAGE_SPAN;
     type Uniform = NoUniform;
     type State = SplatNormals;
 

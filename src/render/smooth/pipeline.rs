@@ -144,6 +144,7 @@ impl SpecializedRenderPipeline for SmoothPipeline {
 }
 
 impl Stage for SmoothPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = GpuSmoothing;
     type State = Smooth;
 

@@ -19,6 +19,7 @@ use super::{
         },
         surface::{Surface, Variant},
     },
+    SPAN,
     depth_draws::{DepthTextures, Merge},
 };
 use crate::settings::FluidDebugView;
@@ -115,6 +116,7 @@ impl SpecializedRenderPipeline for SplatPipeline {
 }
 
 impl Stage for SplatPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = NoUniform;
     type State = DepthTextures;
 

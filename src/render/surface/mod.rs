@@ -20,7 +20,11 @@ use bevy::{
     shader::load_shader_library,
 };
 
-use self::{fluids::extract_fluids, reasons::PlanReports, views::extract_views};
+use self::{
+    fluids::extract_fluids,
+    reasons::{PlanReports, Waiting},
+    views::extract_views,
+};
 pub(crate) use self::{
     uniforms::{GpuFluid, GpuSurface},
     variant::Variant,
@@ -57,8 +61,8 @@ pub struct Surface {
     pub(crate) wanted: Variant,
     /// The variant to draw: the last one whose pipelines are all compiled.
     pub(crate) drawn: Option<Variant>,
-    /// Whether pipelines of the wanted variant are still being compiled.
-    pub(crate) waiting: bool,
+    /// Pipelines of the wanted variant that are not there.
+    pub(crate) waiting: Option<Waiting>,
     /// The pixels of the view that it may cover.
     pub(crate) rect: URect,
     /// Nearest and farthest depth of its bounding box. Unit: m, in the view.
@@ -96,12 +100,19 @@ pub struct ViewSurfaces {
     /// The view's rectangle in the camera's target.
     pub(crate) viewport: URect,
     pub(crate) samples: u32,
+    /// Whether the opaque scene's depth is known.
+    pub(crate) scene_depth: bool,
 }
 
 impl ViewSurfaces {
     /// The view's rectangle in the camera's target. Unit: pixels.
     pub fn viewport(&self) -> URect {
         self.viewport
+    }
+
+    /// Whether the scene's depth must be resolved.
+    pub(crate) fn resolves_depth(&self) -> bool {
+        self.scene_depth && self.samples > 1
     }
 
     /// Whether surfaces may be seen through each other.
@@ -176,7 +187,7 @@ fn forget_surfaces(
 fn choose_variants(mut surfaces: Query<&mut Surface>) {
     for mut surface in &mut surfaces {
         let wanted = surface.wanted;
-        if !surface.waiting {
+        if surface.waiting.is_none() {
             surface.drawn = Some(wanted);
         } else if surface.drawn.is_some_and(|drawn| !drawn.fits(&wanted)) {
             surface.drawn = None;

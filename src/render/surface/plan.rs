@@ -27,6 +27,8 @@ pub struct PlanInput {
     pub material: FluidMaterial,
     /// Whether to leave out work that the material makes unnecessary.
     pub shortcuts: bool,
+    /// Whether the opaque scene's depth is known, from the camera's `DepthPrepass`.
+    pub scene_depth: bool,
     /// The camera's settings.
     pub settings: ScreenSpaceFluid,
 }
@@ -122,7 +124,12 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
     let index_one = accumulated || unbent && input.shortcuts;
     // Soft rims are thin wherever they are.
     let opaque = input.shortcuts && !accumulated && is_opaque(&material.medium, input.radius);
-    let budget = input.settings.refractions.count();
+    // Without the scene's depth no bent ray finds what it meets.
+    let budget = if input.scene_depth {
+        input.settings.refractions.count()
+    } else {
+        0
+    };
     Some(Plan {
         bulk,
         spray,
@@ -165,6 +172,7 @@ mod tests {
         radius: 0.05,
         material: FluidMaterial::WATER,
         shortcuts: true,
+        scene_depth: true,
         settings: ScreenSpaceFluid::DEFAULT,
     };
 
@@ -208,6 +216,15 @@ mod tests {
         let plan = plan(&only_spray).unwrap();
         assert!(!plan.bulk && plan.spray);
         assert_eq!(plan.smoothing, Smoothing::None);
+    }
+
+    #[test]
+    fn without_the_scenes_depth_nothing_is_bent() {
+        let blind = plan(&PlanInput {
+            scene_depth: false,
+            ..POOL
+        });
+        assert_eq!(blind.unwrap().interfaces, 0);
     }
 
     #[test]

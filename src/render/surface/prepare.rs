@@ -2,7 +2,9 @@
 
 use bevy::{
     camera::MainPassResolutionOverride,
+    core_pipeline::prepass::DepthPrepass,
     math::{Affine3A, Vec3A},
+    pbr::PrepassPipeline,
     prelude::*,
     render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
 };
@@ -26,6 +28,27 @@ pub(super) struct Scratch {
     painted: Vec<Entity>,
     /// The surfaces of all views.
     seen: Vec<Entity>,
+    /// Cameras without the scene's depth that were named in the log.
+    blind: Vec<Entity>,
+}
+
+impl Scratch {
+    fn warn_of_missing_depth(&mut self, camera: Entity, scene_depth: bool) {
+        let known = self.blind.iter().position(|it| *it == camera);
+        match (known, scene_depth) {
+            (Some(index), true) => {
+                self.blind.swap_remove(index);
+            }
+            (None, false) => {
+                self.blind.push(camera);
+                warn!(
+                    "camera {camera} has no `DepthPrepass`, or `PbrPlugin` makes no prepasses: \
+                    liquids are drawn without refraction"
+                );
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Groups the fluids of every view into surfaces and plans their passes.
@@ -38,7 +61,9 @@ pub(super) fn prepare_surfaces(
         &Msaa,
         &FluidView,
         Option<&MainPassResolutionOverride>,
+        Has<DepthPrepass>,
     )>,
+    prepass: Option<Res<PrepassPipeline>>,
     mut painted: Query<(Entity, &mut ViewSurfaces)>,
     mut surfaces: Query<(Entity, &mut Surface)>,
     fluids: Query<(Entity, &ExtractedFluid)>,
@@ -54,7 +79,7 @@ pub(super) fn prepare_surfaces(
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
     }
-    for (entity, view, camera, msaa, fluid_view, resolution) in &views {
+    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass) in &views {
         if camera.physical_target_size.is_none() {
             continue;
         }
@@ -62,10 +87,13 @@ pub(super) fn prepare_surfaces(
         if let Some(size) = resolution {
             (viewport.z, viewport.w) = (size.x, size.y);
         }
+        let scene_depth = has_prepass && prepass.is_some();
+        let main_camera = view.retained_view_entity.main_entity.id();
+        scratch.warn_of_missing_depth(main_camera, scene_depth);
         let eye = Eye::new(view);
         if let Some(views) = &mut report {
             views.push(ViewReport {
-                camera: view.retained_view_entity.main_entity.id(),
+                camera: main_camera,
                 surfaces: Vec::new(),
             });
         }
@@ -100,11 +128,19 @@ pub(super) fn prepare_surfaces(
                 radius,
                 material,
                 shortcuts: shortcuts.0,
+                scene_depth,
                 settings: fluid_view.settings,
+            };
+            let leading = members[0].fluid.entity;
+            let is_known = |surface: &Surface| {
+                surface.view == entity
+                    && surface.fluids.first().map(|it| it.entity) == Some(leading)
             };
             if let Some(view) = report.as_mut().and_then(|views| views.last_mut()) {
                 let fluids = members.iter().map(|member| member.fluid.entity);
-                let report = reporter.surface(&input, fluids, rect, viewport.zw());
+                let known = surfaces.iter().find(|(_, surface)| is_known(surface));
+                let waiting = known.and_then(|(_, surface)| surface.waiting);
+                let report = reporter.surface(&input, fluids, waiting, rect, viewport.zw());
                 view.surfaces.push(report);
             }
             let (Some(plan), Some(rect)) = (plan(&input), rect) else {
@@ -121,18 +157,15 @@ pub(super) fn prepare_surfaces(
                 debug_view: fluid_view.debug_view,
                 format: view.target_format,
                 samples: msaa.samples(),
+                scene_depth,
                 several: scratch.groups.len() > 1,
             };
             let depths = eye.depths(bounds);
-            let leading = members[0].fluid.entity;
-            let known = surfaces.iter_mut().find(|(_, surface)| {
-                surface.view == entity
-                    && surface.fluids.first().map(|it| it.entity) == Some(leading)
-            });
+            let known = surfaces.iter_mut().find(|(_, surface)| is_known(surface));
             let surface = if let Some((surface, mut known)) = known {
                 known.fluids.clear();
                 known.fluids.extend(members.iter().map(|it| it.fluid));
-                known.waiting = false;
+                known.waiting = None;
                 known.wanted = wanted;
                 known.rect = rect;
                 known.depths = depths;
@@ -149,7 +182,7 @@ pub(super) fn prepare_surfaces(
                     fluids: members.iter().map(|it| it.fluid).collect(),
                     wanted,
                     drawn: before.and_then(|(_, surface)| surface.drawn),
-                    waiting: false,
+                    waiting: None,
                     rect,
                     depths,
                     uniform,
@@ -168,11 +201,13 @@ pub(super) fn prepare_surfaces(
             known.surfaces.extend(&scratch.painted);
             known.viewport = viewport;
             known.samples = samples;
+            known.scene_depth = scene_depth;
         } else {
             commands.entity(entity).insert(ViewSurfaces {
                 surfaces: scratch.painted.clone(),
                 viewport,
                 samples,
+                scene_depth,
             });
         }
     }

@@ -5,7 +5,15 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use bevy::{ecs::system::SystemParam, prelude::*, render::sync_world::MainEntity};
+use bevy::{
+    ecs::system::SystemParam,
+    prelude::*,
+    render::{
+        render_resource::{CachedPipelineState, CachedRenderPipelineId, PipelineCache},
+        sync_world::MainEntity,
+    },
+    shader::ShaderCacheError,
+};
 
 use super::plan::{PlanInput, plan};
 use crate::{material::FluidMaterial, settings::Smoothing};
@@ -69,7 +77,12 @@ pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
             "nothing is seen through it",
         ),
         (
-            traced && plan.interfaces <= 1,
+            traced && !input.scene_depth,
+            "refraction",
+            "the camera has no DepthPrepass",
+        ),
+        (
+            traced && input.scene_depth && plan.interfaces <= 1,
             "search",
             "the camera wants one refraction at most",
         ),
@@ -95,6 +108,34 @@ pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
     .collect()
 }
 
+/// Pipelines that are missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Waiting {
+    /// The stage whose pipelines are missing, by the label of its passes.
+    pub stage: &'static str,
+    /// Whether they cannot be made, as the log says, rather than being compiled.
+    pub failed: bool,
+}
+
+impl Waiting {
+    pub(crate) fn new(
+        stage: &'static str,
+        pipeline: CachedRenderPipelineId,
+        cache: &PipelineCache,
+    ) -> Self {
+        let failed = match cache.get_render_pipeline_state(pipeline) {
+            // The shader may still be loaded.
+            CachedPipelineState::Err(error) => !matches!(
+                error,
+                ShaderCacheError::ShaderNotLoaded(_)
+                    | ShaderCacheError::ShaderImportNotYetAvailable
+            ),
+            _ => false,
+        };
+        Self { stage, failed }
+    }
+}
+
 /// The plan for a surface in a view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceReport {
@@ -104,6 +145,8 @@ pub struct SurfaceReport {
     pub fluids: Vec<Entity>,
     /// The skipped work.
     pub skipped: Vec<Skipped>,
+    /// What it waited for in the last frame; meanwhile it is drawn as it was before, if at all.
+    pub waiting: Option<Waiting>,
     /// The fraction of the view's pixels that its passes are confined to, 0..=1.
     pub covered: f32,
 }
@@ -179,6 +222,7 @@ impl Reporter<'_, '_> {
         &self,
         input: &PlanInput,
         fluids: impl Iterator<Item = Entity>,
+        waiting: Option<Waiting>,
         rect: Option<URect>,
         view_size: UVec2,
     ) -> SurfaceReport {
@@ -190,6 +234,7 @@ impl Reporter<'_, '_> {
                 .filter_map(|fluid| Some(self.main_entities.get(fluid).ok()?.id()))
                 .collect(),
             skipped: skipped(input),
+            waiting,
             covered: covered / pixels(view_size).max(1.0),
         }
     }
@@ -209,6 +254,7 @@ mod tests {
         radius: 0.05,
         material: FluidMaterial::WATER,
         shortcuts: true,
+        scene_depth: true,
         settings: ScreenSpaceFluid::DEFAULT,
     };
 
@@ -270,6 +316,15 @@ mod tests {
             words(plain),
             ["smoothing", "search", "scattering", "emission"]
         );
+    }
+
+    #[test]
+    fn a_missing_prepass_is_named() {
+        let blind = PlanInput {
+            scene_depth: false,
+            ..POOL
+        };
+        assert_eq!(words(blind), ["refraction", "scattering", "emission"]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! All that decides which pipelines a surface needs.
+//! Variants of surfaces.
 
 use bevy::render::render_resource::TextureFormat;
 
@@ -14,6 +14,8 @@ pub(crate) struct Variant {
     /// Of the camera's target.
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
+    /// Whether the opaque scene's depth is known.
+    pub(crate) scene_depth: bool,
     /// Whether there are other surfaces, which may be visible through this one.
     pub(crate) several: bool,
 }

@@ -66,6 +66,7 @@ impl SpecializedRenderPipeline for ThicknessPipeline {
 }
 
 impl Stage for ThicknessPipeline {
+    const LABEL: &'static str = SPAN;
     type Uniform = NoUniform;
     type State = ();
 

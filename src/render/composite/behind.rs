@@ -1,0 +1,194 @@
+//! Glass and transparent objects behind liquid. Bevy draws them after the liquid, whose depth hides
+//! them: those behind a surface are drawn before it instead, so that they are seen through it.
+
+use bevy::{
+    core_pipeline::{core_3d::Transparent3d, oit::OrderIndependentTransparencySettings},
+    image::ToExtents,
+    pbr::{Transmissive3d, ViewTransmissionTexture},
+    prelude::*,
+    render::{
+        camera::ExtractedCamera,
+        render_phase::{SortedPhaseItem, SortedRenderPhase, ViewSortedRenderPhases},
+        render_resource::{RenderPassDescriptor, StoreOp},
+        renderer::{RenderContext, ViewQuery},
+        view::{ExtractedView, ViewDepthTexture, ViewTarget},
+    },
+};
+
+use crate::render::surface::{Surface, ViewSurfaces};
+
+/// Items taken out of the phases of the view that is drawn, until both phases are drawn.
+#[derive(Resource, Default)]
+pub(crate) struct BehindLiquid {
+    glass: Taken<Transmissive3d>,
+    transparent: Taken<Transparent3d>,
+}
+
+/// Items from far to near.
+struct Taken<I: SortedPhaseItem> {
+    phase: SortedRenderPhase<I>,
+    /// For each surface, from far to near, how many lie behind it.
+    behind: Vec<usize>,
+}
+
+impl<I: SortedPhaseItem> Default for Taken<I> {
+    fn default() -> Self {
+        Self {
+            phase: default(),
+            behind: Vec::new(),
+        }
+    }
+}
+
+/// An item whose place in the order is known.
+trait Placed: SortedPhaseItem {
+    /// z in view space.
+    fn z(&self) -> f32;
+}
+
+impl Placed for Transmissive3d {
+    fn z(&self) -> f32 {
+        self.distance
+    }
+}
+
+impl Placed for Transparent3d {
+    fn z(&self) -> f32 {
+        self.distance
+    }
+}
+
+impl<I: Placed> Taken<I> {
+    /// `farthest` are the depths at which the surfaces end.
+    fn take(
+        &mut self,
+        phase: Option<&mut SortedRenderPhase<I>>,
+        farthest: impl Iterator<Item = f32>,
+    ) {
+        let Some(phase) = phase else {
+            return;
+        };
+        let mut count = 0;
+        for depth in farthest {
+            // A batch is drawn by its first item, and all at once.
+            while let Some((_, item)) = phase.items.get_index(count)
+                && -item.z() > depth
+            {
+                count += item.batch_range().len().max(1);
+            }
+            self.behind.push(count.min(phase.items.len()));
+        }
+        let last = self.behind.last().copied().unwrap_or(0);
+        self.phase.items.extend(phase.items.drain(..last));
+    }
+
+    /// The order is made anew in every frame.
+    fn give_back(&mut self, phase: Option<&mut SortedRenderPhase<I>>) {
+        self.behind.clear();
+        match phase {
+            Some(phase) => phase.items.extend(self.phase.items.drain(..)),
+            None => self.phase.items.clear(),
+        }
+    }
+
+    /// The items behind a surface that are not behind the one before.
+    fn of(&self, surface: usize) -> core::ops::Range<usize> {
+        let end = |index: usize| self.behind.get(index).copied().unwrap_or(0);
+        let start = surface.checked_sub(1).map_or(0, end);
+        start..end(surface)
+    }
+}
+
+pub(crate) fn take_behind(
+    view: ViewQuery<(
+        &ExtractedView,
+        &ViewSurfaces,
+        Has<OrderIndependentTransparencySettings>,
+    )>,
+    surfaces: Query<&Surface>,
+    mut glass: ResMut<ViewSortedRenderPhases<Transmissive3d>>,
+    mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
+    mut behind: ResMut<BehindLiquid>,
+) {
+    let (view, surfaces_of, resolves_transparency) = view.into_inner();
+    let view = &view.retained_view_entity;
+    let farthest = || {
+        let surfaces = surfaces.iter_many(&surfaces_of.surfaces);
+        surfaces.map(|surface| surface.depths.y)
+    };
+    behind.glass.take(glass.get_mut(view), farthest());
+    // Where transparency is independent of order, all of it is resolved at the end.
+    if !resolves_transparency {
+        behind
+            .transparent
+            .take(transparent.get_mut(view), farthest());
+    }
+}
+
+pub(crate) fn give_back(
+    view: ViewQuery<(&ExtractedView, &ViewSurfaces)>,
+    mut glass: ResMut<ViewSortedRenderPhases<Transmissive3d>>,
+    mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
+    mut behind: ResMut<BehindLiquid>,
+) {
+    let (view, _) = view.into_inner();
+    let view = &view.retained_view_entity;
+    behind.glass.give_back(glass.get_mut(view));
+    behind.transparent.give_back(transparent.get_mut(view));
+}
+
+/// What it takes to draw a view's items.
+pub(super) struct ViewItems<'a> {
+    pub(super) world: &'a World,
+    pub(super) entity: Entity,
+    pub(super) camera: &'a ExtractedCamera,
+    pub(super) target: &'a ViewTarget,
+    pub(super) depth: &'a ViewDepthTexture,
+    pub(super) transmission: Option<&'a ViewTransmissionTexture>,
+}
+
+impl BehindLiquid {
+    /// Draws what lies behind a surface of the view; tells whether there was anything.
+    pub(super) fn draw(&self, ctx: &mut RenderContext, view: &ViewItems, surface: usize) -> bool {
+        let (glass, transparent) = (self.glass.of(surface), self.transparent.of(surface));
+        let something = !glass.is_empty() || !transparent.is_empty();
+        // Glass shows what was drawn before it.
+        if !glass.is_empty()
+            && let (Some(size), Some(copy)) = (view.camera.physical_target_size, view.transmission)
+        {
+            ctx.command_encoder().copy_texture_to_texture(
+                view.target.main_texture().as_image_copy(),
+                copy.texture.as_image_copy(),
+                size.to_extents(),
+            );
+        }
+        view.draw(ctx, &self.glass.phase, glass);
+        view.draw(ctx, &self.transparent.phase, transparent);
+        something
+    }
+}
+
+impl ViewItems<'_> {
+    fn draw<I: SortedPhaseItem>(
+        &self,
+        ctx: &mut RenderContext,
+        phase: &SortedRenderPhase<I>,
+        items: core::ops::Range<usize>,
+    ) {
+        if items.is_empty() {
+            return;
+        }
+        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("behind_liquid"),
+            color_attachments: &[Some(self.target.get_color_attachment())],
+            depth_stencil_attachment: Some(self.depth.get_attachment(StoreOp::Store)),
+            ..default()
+        });
+        if let Some(viewport) = &self.camera.viewport {
+            pass.set_camera_viewport(viewport);
+        }
+        if let Err(error) = phase.render_range(&mut pass, self.world, self.entity, items) {
+            bevy::utils::once!(error!("an object behind liquid is not drawn: {error:?}"));
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Distance fog before liquids, smoke and rain.
+
+use super::*;
+use bevy::pbr::{DistanceFog, FogFalloff};
+
+const FOG: Color = Color::srgb(0.6, 0.7, 0.8);
+
+fn fog(falloff: FogFalloff) -> DistanceFog {
+    DistanceFog {
+        color: FOG,
+        falloff,
+        ..default()
+    }
+}
+
+fn falloffs() -> [FogFalloff; 4] {
+    [
+        FogFalloff::Linear {
+            start: 5.0,
+            end: 60.0,
+        },
+        FogFalloff::Exponential { density: 0.03 },
+        FogFalloff::ExponentialSquared { density: 0.03 },
+        FogFalloff::Atmospheric {
+            extinction: vec3(0.01, 0.03, 0.05),
+            inscattering: vec3(0.02, 0.01, 0.03),
+        },
+    ]
+}
+
+/// A black ball of liquid beside a black box as far away, under each kind of fog.
+#[test]
+fn ink_is_fogged_as_a_mesh_is() {
+    for falloff in falloffs() {
+        let glowing = DistanceFog {
+            directional_light_color: Color::srgba(1.0, 0.9, 0.5, 0.002),
+            directional_light_exponent: 8.0,
+            ..fog(falloff.clone())
+        };
+        for fog in [fog(falloff.clone()), glowing] {
+            let mut app = headless_app(SIZE, |app| {
+                app.add_plugins(FluidPlugin::default())
+                    .insert_resource(ClearColor(FOG));
+                let world = app.world_mut();
+                world.spawn((
+                    Camera3d::default(),
+                    ScreenSpaceFluid::default(),
+                    fog.clone(),
+                ));
+                let black = FluidMaterial {
+                    refractive_index: 1.0,
+                    ..FluidMaterial::INK
+                };
+                let ink = FluidParticles::new(ball(5.0, 0.35), 0.35);
+                world.spawn((ink, black, Transform::from_xyz(-4.0, 0.0, -30.0)));
+                // Its front is as far away as the ball's.
+                let black = StandardMaterial {
+                    unlit: true,
+                    ..Color::BLACK.into()
+                };
+                paint(world, Vec3::splat(6.0), black, vec3(4.0, 0.0, -28.0));
+                world.spawn((
+                    DirectionalLight::default(),
+                    Transform::default().looking_to(Vec3::Z, Vec3::Y),
+                ));
+            })
+            .unwrap();
+            settle(&mut app).unwrap();
+            let picture = capture(&mut app).unwrap();
+            let [ink, mesh] = [63, 97].map(|x| picture.get_pixel(x, 60).0);
+            assert!(mesh[2] > 40, "{mesh:?}");
+            assert!(differ(ink, mesh) < 8, "{fog:?}: ink {ink:?}, mesh {mesh:?}");
+        }
+    }
+}
+
+/// Clear water does not add fog of its own to what is fogged already.
+#[test]
+fn clear_water_in_fog_looks_as_what_is_behind_it() {
+    let mut app = headless_app(SIZE, |app| {
+        app.add_plugins(FluidPlugin::default())
+            .insert_resource(ClearColor(FOG));
+        let world = app.world_mut();
+        let linear = FogFalloff::Linear {
+            start: 5.0,
+            end: 100.0,
+        };
+        world.spawn((
+            Camera3d::default(),
+            ScreenSpaceFluid::default(),
+            fog(linear),
+        ));
+        let clear = FluidMaterial {
+            refractive_index: 1.0,
+            ..FluidMaterial::CLEAR_WATER
+        };
+        let water = FluidParticles::new(ball(5.0, 0.35), 0.35);
+        world.spawn((water, clear, Transform::from_xyz(0.0, 0.0, -30.0)));
+        paint(
+            world,
+            vec3(99.0, 99.0, 1.0),
+            unlit(Color::BLACK),
+            vec3(0.0, 0.0, -60.0),
+        );
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let picture = capture(&mut app).unwrap();
+    let [beside, through] = [10, 80].map(|x| picture.get_pixel(x, 60).0);
+    assert!(
+        beside[2] > 40 && differ(beside, through) < 6,
+        "{beside:?} {through:?}"
+    );
+}
+
+/// Bright rain seen against black turns to the colour of a fog as dense as the rain is far.
+#[test]
+fn rain_is_fogged() {
+    let green = |fogged: bool| {
+        let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
+            let rain = Rain {
+                rate: 100.0,
+                brightness: 30.0,
+                ..Rain::HEAVY
+            };
+            let ambient = AmbientLight {
+                brightness: 3000.0,
+                ..default()
+            };
+            let mut camera = world.entity_mut(camera);
+            camera.insert((rain, ambient));
+            if fogged {
+                let thick = FogFalloff::Exponential { density: 3.0 };
+                camera.insert(DistanceFog {
+                    color: Color::BLACK,
+                    falloff: thick,
+                    ..default()
+                });
+            }
+        });
+        let picture = capture(&mut app).unwrap();
+        let corner = (0..40).flat_map(|x| (0..30).map(move |y| (x, y)));
+        let sum: u32 = corner
+            .map(|(x, y)| u32::from(picture.get_pixel(x, y).0[1]))
+            .sum();
+        f64::from(sum) / 1200.0
+    };
+    let (clear, fogged) = (green(false), green(true));
+    assert!(clear > 5.0 && fogged < 0.5 * clear, "{clear} {fogged}");
+}
