@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::{
-    app::PluginsState,
+    app::{PluginGroupBuilder, PluginsState},
     prelude::*,
     render::{
         RenderApp,
@@ -47,8 +47,24 @@ pub fn headless_app_with(
     settings: WgpuSettings,
     configure: impl FnOnce(&mut App),
 ) -> Result<App, StageError> {
+    app_of(plugins::headless(size, settings, true)?, configure)
+}
+
+/// The same as [`headless_app`], but pipelines are compiled in the background, as in a game.
+pub fn headless_app_in_background(
+    size: UVec2,
+    configure: impl FnOnce(&mut App),
+) -> Result<App, StageError> {
+    let settings = WgpuSettings::default();
+    app_of(plugins::headless(size, settings, false)?, configure)
+}
+
+fn app_of(
+    plugins: PluginGroupBuilder,
+    configure: impl FnOnce(&mut App),
+) -> Result<App, StageError> {
     let mut app = App::new();
-    app.add_plugins(plugins::headless(size, settings)?);
+    app.add_plugins(plugins);
     configure(&mut app);
     finish(&mut app);
     Ok(app)

@@ -39,8 +39,8 @@ mod timing;
 pub use args::{ArgumentError, parse_args};
 pub use error::StageError;
 pub use headless::{
-    adapter_name, capture, headless_app, headless_app_with, resize, set_time_step, settle, step,
-    validation_errors,
+    adapter_name, capture, headless_app, headless_app_in_background, headless_app_with, resize,
+    set_time_step, settle, step, validation_errors,
 };
 pub use picture::PendingPicture;
 pub use plugins::{StagePlugins, VIEW_SIZE};

@@ -65,7 +65,7 @@ impl PluginGroup for StagePlugins {
         let wants_window = self.out.is_none();
         let group = match self.out.clone() {
             _ if wants_window && !Stage::has_display() => Err(StageError::NoDisplay),
-            Some(out) => headless(self.size, WgpuSettings::default()).map(|group| {
+            Some(out) => headless(self.size, WgpuSettings::default(), true).map(|group| {
                 group.add(PicturePlugin {
                     out,
                     frames: self.frames,
@@ -108,6 +108,7 @@ fn windowed(size: UVec2, title: String) -> Result<PluginGroupBuilder, StageError
 pub(crate) fn headless(
     size: UVec2,
     settings: WgpuSettings,
+    synchronous_pipeline_compilation: bool,
 ) -> Result<PluginGroupBuilder, StageError> {
     check(size)?;
     log::listen();
@@ -118,7 +119,7 @@ pub(crate) fn headless(
             ..default()
         })
         .set(RenderPlugin {
-            synchronous_pipeline_compilation: true,
+            synchronous_pipeline_compilation,
             render_creation: settings.into(),
             ..default()
         })

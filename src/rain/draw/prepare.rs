@@ -55,7 +55,7 @@ pub(crate) fn queue_rain(
     pipeline: Res<RainPipeline>,
     mut pipelines: ResMut<SpecializedRenderPipelines<RainPipeline>>,
     images: Res<RenderAssets<GpuImage>>,
-    cache: Res<PipelineCache>,
+    mut cache: ResMut<PipelineCache>,
 ) {
     let buffers = &mut *buffers;
     buffers.uniforms.clear();
@@ -157,13 +157,15 @@ pub(crate) fn queue_rain(
             lamps: !buffers.near.is_empty(),
             shelters: gpu.shelter_count > 0,
         };
+        let target = (view.target_format, msaa.samples());
+        let other_target = quads.target.replace(target).is_some_and(|it| it != target);
         let [backdrop, billboards, drops] =
             [RainPart::Backdrop, RainPart::Billboards, RainPart::Drops].map(|part| {
                 let mut of = |scene| {
                     let key = RainKey {
                         part,
-                        format: view.target_format,
-                        samples: msaa.samples(),
+                        format: target.0,
+                        samples: target.1,
                         scene,
                     };
                     pipelines.specialize(&cache, &pipeline, key)
@@ -175,10 +177,15 @@ pub(crate) fn queue_rain(
                     scene
                 });
                 // When the first lamp appears, rain must not vanish until its shader is compiled.
-                match cache.get_render_pipeline(wanted) {
+                let pipeline = match cache.get_render_pipeline(wanted) {
                     Some(_) => wanted,
                     None => of(RainScene::ALL),
+                };
+                // Nor when the target changes: better a slow frame than one without rain.
+                if other_target {
+                    cache.block_on_render_pipeline(pipeline);
                 }
+                pipeline
             });
 
         let mut add = |item: usize, distance: f32, pipeline| {

@@ -5,7 +5,9 @@ use core::ops::Range;
 use bevy::{
     prelude::*,
     render::{
-        render_resource::{BindGroup, BufferId, BufferUsages, RawBufferVec, TextureViewId},
+        render_resource::{
+            BindGroup, BufferId, BufferUsages, RawBufferVec, TextureFormat, TextureViewId,
+        },
         texture::CachedTexture,
     },
 };
@@ -32,6 +34,8 @@ pub struct RainQuads {
     pub(crate) bind_group: Option<RainBindGroup>,
     pub(crate) uniform_offset: u32,
     pub(crate) view_offset: u32,
+    /// Format and samples of the target in the last frame.
+    pub(crate) target: Option<(TextureFormat, u32)>,
 }
 
 /// The bind group of the shaders and the resources it was made from; it is valid until they change.
@@ -106,6 +110,7 @@ impl Default for RainQuads {
             bind_group: None,
             uniform_offset: 0,
             view_offset: 0,
+            target: None,
         }
     }
 }

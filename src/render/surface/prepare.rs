@@ -28,26 +28,23 @@ pub(super) struct Scratch {
     painted: Vec<Entity>,
     /// The surfaces of all views.
     seen: Vec<Entity>,
-    /// Cameras without the scene's depth that were named in the log.
-    blind: Vec<Entity>,
+    /// Cameras that the log has named because they lack something.
+    without_depth: Vec<Entity>,
+    without_hdr: Vec<Entity>,
 }
 
-impl Scratch {
-    fn warn_of_missing_depth(&mut self, camera: Entity, scene_depth: bool) {
-        let known = self.blind.iter().position(|it| *it == camera);
-        match (known, scene_depth) {
-            (Some(index), true) => {
-                self.blind.swap_remove(index);
-            }
-            (None, false) => {
-                self.blind.push(camera);
-                warn!(
-                    "camera {camera} has no `DepthPrepass`, or `PbrPlugin` makes no prepasses: \
-                    liquids are drawn without refraction"
-                );
-            }
-            _ => {}
+/// Warns once when a camera comes to lack something.
+fn warn_if(named: &mut Vec<Entity>, camera: Entity, lacks: bool, warning: &str) {
+    let known = named.iter().position(|it| *it == camera);
+    match (known, lacks) {
+        (Some(index), false) => {
+            named.swap_remove(index);
         }
+        (None, true) => {
+            named.push(camera);
+            warn!("camera {camera} {warning}");
+        }
+        _ => {}
     }
 }
 
@@ -89,7 +86,19 @@ pub(super) fn prepare_surfaces(
         }
         let scene_depth = has_prepass && prepass.is_some();
         let main_camera = view.retained_view_entity.main_entity.id();
-        scratch.warn_of_missing_depth(main_camera, scene_depth);
+        warn_if(
+            &mut scratch.without_depth,
+            main_camera,
+            !scene_depth,
+            "has no `DepthPrepass`, or `PbrPlugin` makes no prepasses: its liquids are drawn \
+             without refraction",
+        );
+        warn_if(
+            &mut scratch.without_hdr,
+            main_camera,
+            !camera.hdr,
+            "has no `Hdr`: its liquids are not tone mapped",
+        );
         let eye = Eye::new(view);
         if let Some(views) = &mut report {
             views.push(ViewReport {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::common::assert_sound;
-use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::{camera::Hdr, core_pipeline::prepass::DepthPrepass};
 use bevy_fluid::render::PlanReports;
 
 fn stacked(msaa: Msaa) -> App {
@@ -98,4 +98,16 @@ fn without_a_prepass_the_liquid_stays_and_the_log_says_so() {
     let report = &reports.latest()[0].surfaces[0];
     let why = report.skipped.iter().find(|it| it.work == "refraction");
     assert_eq!(why.unwrap().why, "the camera has no DepthPrepass");
+}
+
+#[test]
+fn a_camera_that_loses_hdr_is_named_once() {
+    fluid_stage::log::listen();
+    let mut eye = Entity::PLACEHOLDER;
+    let mut app = scene(Color::WHITE, FluidMaterial::INK, |_, camera| eye = camera);
+    let before = fluid_stage::log::count("has no `Hdr`");
+    app.world_mut().entity_mut(eye).remove::<Hdr>();
+    fluid_stage::step(&mut app, 4);
+    assert!(pixel(&mut app, MIDDLE)[0] < 110);
+    assert_eq!(fluid_stage::log::count("has no `Hdr`"), before + 1);
 }

@@ -7,7 +7,7 @@ use bevy::{
     camera::{Hdr, RenderTarget, Viewport},
     core_pipeline::tonemapping::Tonemapping,
 };
-use bevy_fluid::settings::FluidDebugView;
+use bevy_fluid::{render::PlanReports, settings::FluidDebugView};
 use fluid_stage::{Stage, step};
 
 type Change = fn(&mut World, Entity, Entity);
@@ -28,66 +28,117 @@ fn assert_never_gone(changes: &[(&str, Change)]) {
     }
 }
 
+/// The same with pipelines that are compiled in the background, until nothing is waited for.
+fn assert_never_gone_meanwhile(changes: &[(&str, Change)]) {
+    let mut camera = Entity::PLACEHOLDER;
+    let mut app = headless_app_in_background(SIZE, |app| {
+        fill(app, Color::WHITE, FluidMaterial::INK, |_, it| camera = it);
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let liquid = crate::common::only::<FluidParticles>(&mut app);
+    let reports = app.world().resource::<PlanReports>().clone();
+    let mut waited = 0;
+    for (name, change) in changes {
+        change(app.world_mut(), camera, liquid);
+        let mut ready = 0;
+        for frame in 0.. {
+            reports.ask();
+            step(&mut app, 1);
+            let middle = pixel(&mut app, MIDDLE);
+            assert!(middle[0] < 110, "{name}, frame {frame}: {middle:?}");
+            let views = reports.latest();
+            let surfaces = views.iter().flat_map(|view| &view.surfaces);
+            let waiting: Vec<_> = surfaces.filter_map(|it| it.waiting).collect();
+            assert!(frame < 3000, "{name} waits for {waiting:?}");
+            waited += usize::from(!waiting.is_empty());
+            ready = if waiting.is_empty() { ready + 1 } else { 0 };
+            if ready == 4 {
+                break;
+            }
+        }
+    }
+    assert!(waited > 0, "something is waited for");
+}
+
+const OF_THE_CAMERA: &[(&str, Change)] = &[
+    ("no multisampling", |world, camera, _| {
+        world.entity_mut(camera).insert(Msaa::Off);
+    }),
+    ("multisampling", |world, camera, _| {
+        world.entity_mut(camera).insert(Msaa::Sample4);
+    }),
+    ("layers", |world, camera, liquid| {
+        for entity in [camera, liquid] {
+            world.entity_mut(entity).insert(RenderLayers::layer(3));
+        }
+    }),
+    ("tonemapping", |world, camera, _| {
+        world.entity_mut(camera).insert(Tonemapping::None);
+    }),
+    ("without a viewport of its own", |world, camera, _| {
+        world.get_mut::<Camera>(camera).unwrap().viewport = Some(Viewport {
+            physical_position: UVec2::ZERO,
+            physical_size: SIZE,
+            ..default()
+        });
+    }),
+    ("settings", |world, camera, _| {
+        world.entity_mut(camera).insert(ScreenSpaceFluid::FAST);
+    }),
+    ("no high dynamic range", |world, camera, _| {
+        world.entity_mut(camera).remove::<Hdr>();
+    }),
+    ("high dynamic range", |world, camera, _| {
+        world.entity_mut(camera).insert(Hdr);
+    }),
+];
+
+const OF_THE_FLUID: &[(&str, Change)] = &[
+    ("the first droplet", |world, _, liquid| {
+        let mut fluid = world.get_mut::<FluidParticles>(liquid).unwrap();
+        fluid.positions.push(vec3(0.0, 0.8, 0.0));
+    }),
+    ("the terms of its medium", |world, _, liquid| {
+        let mut material = world.get_mut::<FluidMaterial>(liquid).unwrap();
+        material.medium.emission = LinearRgba::rgb(0.01, 0.0, 0.0);
+    }),
+    ("radius", |world, _, liquid| {
+        world.get_mut::<FluidParticles>(liquid).unwrap().radius = 0.04;
+    }),
+    ("kernel", |world, _, liquid| {
+        let kernel = SurfaceKernel {
+            neighbor_radius: 3.0,
+            ..default()
+        };
+        world.entity_mut(liquid).insert(kernel);
+    }),
+    ("a second fluid", |world, _, _| {
+        world.spawn(drop_of(FluidMaterial::HONEY, vec3(1.0, 0.5, -4.0)));
+    }),
+    ("a second fluid of ink", |world, _, _| {
+        world.spawn(drop_of(FluidMaterial::INK, vec3(-0.5, 0.5, -4.0)));
+    }),
+    ("the fluid anew", |world, _, liquid| {
+        world.despawn(liquid);
+        world.spawn(drop_of(FluidMaterial::INK, Vec3::NEG_Z * 3.0));
+    }),
+];
+
 #[test]
 fn ink_stays_through_changes_of_the_camera() {
-    assert_never_gone(&[
-        ("no multisampling", |world, camera, _| {
-            world.entity_mut(camera).insert(Msaa::Off);
-        }),
-        ("multisampling", |world, camera, _| {
-            world.entity_mut(camera).insert(Msaa::Sample4);
-        }),
-        ("layers", |world, camera, liquid| {
-            for entity in [camera, liquid] {
-                world.entity_mut(entity).insert(RenderLayers::layer(3));
-            }
-        }),
-        ("tonemapping", |world, camera, _| {
-            world.entity_mut(camera).insert(Tonemapping::None);
-        }),
-        ("without a viewport of its own", |world, camera, _| {
-            world.get_mut::<Camera>(camera).unwrap().viewport = Some(Viewport {
-                physical_position: UVec2::ZERO,
-                physical_size: SIZE,
-                ..default()
-            });
-        }),
-        ("settings", |world, camera, _| {
-            world.entity_mut(camera).insert(ScreenSpaceFluid::FAST);
-        }),
-        ("no high dynamic range", |world, camera, _| {
-            world.entity_mut(camera).remove::<Hdr>();
-        }),
-        ("high dynamic range", |world, camera, _| {
-            world.entity_mut(camera).insert(Hdr);
-        }),
-    ]);
+    assert_never_gone(OF_THE_CAMERA);
 }
 
 #[test]
 fn ink_stays_through_changes_of_the_fluid() {
-    assert_never_gone(&[
-        ("radius", |world, _, liquid| {
-            world.get_mut::<FluidParticles>(liquid).unwrap().radius = 0.04;
-        }),
-        ("kernel", |world, _, liquid| {
-            let kernel = SurfaceKernel {
-                neighbor_radius: 3.0,
-                ..default()
-            };
-            world.entity_mut(liquid).insert(kernel);
-        }),
-        ("a second fluid", |world, _, _| {
-            world.spawn(drop_of(FluidMaterial::HONEY, vec3(1.0, 0.5, -4.0)));
-        }),
-        ("a second fluid of ink", |world, _, _| {
-            world.spawn(drop_of(FluidMaterial::INK, vec3(-0.5, 0.5, -4.0)));
-        }),
-        ("the fluid anew", |world, _, liquid| {
-            world.despawn(liquid);
-            world.spawn(drop_of(FluidMaterial::INK, Vec3::NEG_Z * 3.0));
-        }),
-    ]);
+    assert_never_gone(OF_THE_FLUID);
+}
+
+#[test]
+fn ink_stays_while_pipelines_are_compiled_in_the_background() {
+    assert_never_gone_meanwhile(OF_THE_CAMERA);
+    assert_never_gone_meanwhile(OF_THE_FLUID);
 }
 
 #[test]
@@ -171,5 +222,45 @@ fn the_target_may_change() {
     for _ in 0..3 {
         step(&mut app, 1);
         assert!(pixel(&mut app, MIDDLE)[0] < 110);
+    }
+}
+
+/// In the background too: rain is there in every frame after its target has changed.
+#[test]
+fn rain_stays_while_its_target_changes() {
+    let mut camera = Entity::PLACEHOLDER;
+    let mut app = headless_app_in_background(SIZE, |app| {
+        fill(app, Color::BLACK, FluidMaterial::INK, |world, it| {
+            camera = it;
+            let rain = Rain {
+                rate: 100.0,
+                brightness: 30.0,
+                ..Rain::HEAVY
+            };
+            let ambient = AmbientLight {
+                brightness: 3000.0,
+                ..default()
+            };
+            world.entity_mut(camera).insert((rain, ambient));
+        });
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let wet = |app: &mut App| {
+        let picture = capture(app).unwrap();
+        picture.pixels().filter(|pixel| pixel.0[1] > 0).count()
+    };
+    let before = wet(&mut app);
+    assert!(before > 3000, "{before}");
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        app.world_mut().entity_mut(camera).insert(msaa);
+        for frame in 0..4 {
+            step(&mut app, 1);
+            let now = wet(&mut app);
+            assert!(
+                2 * now > before,
+                "{msaa:?}, frame {frame}: {now} of {before}"
+            );
+        }
     }
 }

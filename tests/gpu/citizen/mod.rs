@@ -9,7 +9,7 @@ mod lights;
 
 use bevy::{camera::visibility::RenderLayers, prelude::*};
 use bevy_fluid::prelude::*;
-use fluid_stage::{ball, capture, headless_app, settle};
+use fluid_stage::{ball, capture, headless_app, headless_app_in_background, settle};
 
 const SIZE: UVec2 = uvec2(160, 120);
 const MIDDLE: UVec2 = uvec2(80, 60);
@@ -22,23 +22,29 @@ fn drop_of(material: FluidMaterial, at: Vec3) -> impl Bundle {
 
 /// An app with a ball of a material 3 m before a camera, over a colour.
 fn scene(clear: Color, material: FluidMaterial, more: impl FnOnce(&mut World, Entity)) -> App {
-    let mut app = headless_app(SIZE, |app| {
-        app.add_plugins((
-            FluidPlugin::default(),
-            RainPlugin {
-                synchronous_bake: true,
-            },
-        ))
-        .insert_resource(ClearColor(clear));
-        let world = app.world_mut();
-        let camera = (Camera3d::default(), ScreenSpaceFluid::default());
-        let camera = world.spawn(camera).id();
-        world.spawn(drop_of(material, Vec3::NEG_Z * 3.0));
-        more(world, camera);
-    })
-    .unwrap();
+    let mut app = headless_app(SIZE, |app| fill(app, clear, material, more)).unwrap();
     settle(&mut app).unwrap();
     app
+}
+
+fn fill(
+    app: &mut App,
+    clear: Color,
+    material: FluidMaterial,
+    more: impl FnOnce(&mut World, Entity),
+) {
+    app.add_plugins((
+        FluidPlugin::default(),
+        RainPlugin {
+            synchronous_bake: true,
+        },
+    ))
+    .insert_resource(ClearColor(clear));
+    let world = app.world_mut();
+    let camera = (Camera3d::default(), ScreenSpaceFluid::default());
+    let camera = world.spawn(camera).id();
+    world.spawn(drop_of(material, Vec3::NEG_Z * 3.0));
+    more(world, camera);
 }
 
 fn pixel(app: &mut App, at: UVec2) -> [u8; 4] {
