@@ -75,6 +75,7 @@ fn corpus() -> Vec<(&'static str, Vec<u8>)> {
             .concat(),
         ),
         ("xyz", bytes(f32::to_le_bytes)),
+        ("xyz", lines.into_bytes()),
     ]
 }
 

@@ -18,7 +18,7 @@ use clap::{
 #[derive(Parser, Debug)]
 #[command(name = "viewer")]
 pub(crate) struct Args {
-    /// Particles: .vtk, .bgeo, .ply or .xyz (binary f32 triples)
+    /// Particles: .vtk, .bgeo, .ply or .xyz (binary f32 triples or text)
     pub(crate) file: PathBuf,
     /// Particle radius in the file's units
     #[arg(long, value_parser = positive, allow_hyphen_values = true)]

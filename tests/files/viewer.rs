@@ -54,11 +54,13 @@ fn a_file_that_cannot_be_read_is_named() {
     for (path, reason) in [
         (folder.join("missing.vtk"), "cannot read"),
         (file("truncated.vtk", vtk), "damaged"),
-        (file("foreign.vtk", b"GIF89a, and no particles"), "damaged"),
-        (file("foreign.ply", b"GIF89a, and no particles"), "damaged"),
-        (file("foreign.bgeo", b"GIF89a, and no particles"), "damaged"),
+        (file("foreign.vtk", b"GIF89a, and no particles"), "a GIF"),
+        (file("foreign.ply", b"GIF89a, and no particles"), "a GIF"),
+        (file("foreign.bgeo", b"GIF89a, and no particles"), "a GIF"),
+        (file("foreign.xyz", b"no particles at all"), "text"),
         (file("foreign.txt", b"1 2 3"), "format"),
-        (file("odd.xyz", b"1 2 3"), "12"),
+        (file("foreign.vtu", b"<?xml version=\"1.0\"?>"), "XML"),
+        (file("odd.xyz", &[0; 13]), "12"),
         (file("empty.vtk", b""), "empty"),
         (file("empty.xyz", b""), "empty"),
     ] {

@@ -18,7 +18,7 @@ pub(super) fn recordings(ui: &mut Ui, world: &World, fluid: Entity) {
             ("number of the one shown", shown),
             ("held", frames.held().to_string()),
             ("loading", frames.loading().to_string()),
-            ("damaged or missing", frames.skipped().to_string()),
+            ("unreadable or missing", frames.skipped().to_string()),
         ];
         section(ui, "Loaded frames", lines);
     }

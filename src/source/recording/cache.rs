@@ -23,7 +23,7 @@ pub struct LoadedFrames {
     /// The frames of the whole recording, compared to detect another or a reloaded one.
     recorded: Arc<[RecordedFrame]>,
     slots: Vec<Slot>,
-    /// Those that have not turned out to be damaged, by number.
+    /// Those that have not turned out to be unreadable, by number.
     pub(super) playable: Vec<usize>,
     /// What should be held, the most urgent first.
     window: Vec<usize>,
@@ -85,7 +85,7 @@ impl LoadedFrames {
         self.is_waiting
     }
 
-    /// Number of frames found to be damaged or missing.
+    /// Number of frames that cannot be read or are missing.
     pub fn skipped(&self) -> usize {
         self.recorded.len() - self.playable.len()
     }

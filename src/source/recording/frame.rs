@@ -10,7 +10,8 @@ use thiserror::Error;
 #[derive(Asset, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct ParticleFrame {
-    /// Centres, in the file's order. Unit: m. Those that are not finite are kept.
+    /// Centres, in the file's order. Unit: m. Those that are not finite are kept, and
+    /// dropped by the fluid that shows them.
     pub positions: Vec<Vec3>,
     /// Ids that match particles from frame to frame: one for each particle, or none at all.
     pub ids: Vec<u32>,
@@ -44,6 +45,14 @@ pub enum FrameError {
         /// The file.
         name: String,
     },
+    /// The file is something else than its extension says, or of a kind that is not read.
+    #[error("{name} is not read: {reason}")]
+    Unsupported {
+        /// The file.
+        name: String,
+        /// What it is.
+        reason: String,
+    },
     /// The file breaks the rules of its format.
     #[error("{name} is damaged: {reason}")]
     Damaged {
@@ -63,15 +72,7 @@ pub enum FrameError {
 }
 
 impl ParticleFrame {
-    /// What a reader has found, if every attribute is there for every particle.
-    pub(super) fn checked(self) -> Result<Self, String> {
-        self.check()?;
-        Ok(Self {
-            radius: self.radius.filter(|&radius| is_radius(radius)),
-            ..self
-        })
-    }
-
+    /// Whether every attribute is there for every particle.
     pub(super) fn check(&self) -> Result<(), String> {
         let count = self.positions.len();
         for (what, there) in [

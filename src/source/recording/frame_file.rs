@@ -3,29 +3,37 @@
 use std::{fs, io, path::Path};
 
 use super::{
-    format::ParticleFormat,
+    format::{Fault, ParticleFormat},
     frame::{FrameError, ParticleFrame},
+    notes::log_once,
 };
 
 impl ParticleFrame {
     /// Parses the content of the file `name`, whose extension sets the format. Memory and time are
-    /// bounded by the actual bytes, whatever the header claims (a zipped `.bgeo` may unzip to 1
-    /// GiB).
+    /// bounded by the actual bytes, whatever the header claims (a zipped file may unzip to 1 GiB).
+    ///
+    /// An attribute that cannot be read is left out, and logged once for all files whose names
+    /// differ in their numbers alone.
     ///
     /// # Errors
-    /// [`FrameError::Format`], [`FrameError::Empty`] and [`FrameError::Damaged`].
+    /// [`FrameError::Format`], [`FrameError::Empty`], [`FrameError::Unsupported`] and
+    /// [`FrameError::Damaged`].
     pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, FrameError> {
         let format = ParticleFormat::of(name)?;
         if bytes.is_empty() && format != ParticleFormat::Xyz {
             return Err(FrameError::Empty { name: name.into() });
         }
-        format
-            .read(bytes)
-            .and_then(Self::checked)
-            .map_err(|reason| FrameError::Damaged {
-                name: name.into(),
-                reason: reason.lines().next().unwrap_or_default().into(),
-            })
+        let name = name.to_owned();
+        match format.read(bytes) {
+            Ok(found) => {
+                for note in &found.notes {
+                    log_once(&name, note);
+                }
+                Ok(found.frame)
+            }
+            Err(Fault::Damaged(reason)) => Err(FrameError::Damaged { name, reason }),
+            Err(Fault::Unsupported(reason)) => Err(FrameError::Unsupported { name, reason }),
+        }
     }
 
     /// Reads a file from the file system.
@@ -56,7 +64,7 @@ impl ParticleFrame {
         let format = ParticleFormat::of(&name)?;
         bytes.clear();
         self.check()
-            .and_then(|()| format.write(self, bytes))
+            .and_then(|()| format.write(&name, self, bytes))
             .and_then(|()| replace(path, bytes).map_err(|error| error.to_string()))
             .map_err(|reason| FrameError::Write { name, reason })
     }

@@ -11,11 +11,10 @@ use ron::extensions::Extensions;
 use super::{
     asset::{FluidRecording, RecordingSettings},
     error::RecordingError,
-    format::ParticleFormat,
     frame::{FrameError, ParticleFrame},
 };
 
-/// Loads a [`ParticleFrame`] from a file of any [`ParticleFormat`].
+/// Loads a [`ParticleFrame`] from a file of any [`ParticleFormat`](super::ParticleFormat).
 #[derive(Clone, Copy, Debug, Default, TypePath)]
 pub struct ParticleFrameLoader;
 
@@ -43,7 +42,18 @@ impl AssetLoader for ParticleFrameLoader {
     }
 
     fn extensions(&self) -> &[&str] {
-        &ParticleFormat::EXTENSIONS
+        &[
+            "vtk",
+            "bgeo",
+            "bhclassic",
+            "ply",
+            "xyz",
+            "vtk.gz",
+            "bgeo.gz",
+            "bhclassic.gz",
+            "ply.gz",
+            "xyz.gz",
+        ]
     }
 }
 

@@ -22,11 +22,7 @@
 //! }
 //! ```
 //!
-//! Some of the readers of particle files panic on invalid input. The panic is caught and becomes an
-//! error that names the file. To keep it from being printed, the first `.vtk` or `.ply` that is
-//! read wraps the process's panic hook, permanently: all other panics still reach the previous
-//! hook. A hook that the program sets afterwards replaces the wrapped one, and is called for
-//! damaged files too.
+//! Whatever is in a file, reading it is at worst an error that names the file, never a panic.
 //!
 //! A player reads assets, a writer writes to the file system: a player's patterns are asset paths,
 //! a writer's are file system paths; absolute paths are the same for both.
@@ -40,11 +36,11 @@ mod frame;
 mod frame_file;
 mod interpolate;
 mod loader;
+mod notes;
 mod pattern;
 mod playback;
 mod player;
 mod playhead;
-mod quietly;
 mod writer;
 
 use bevy::prelude::*;

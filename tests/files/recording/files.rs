@@ -23,10 +23,12 @@ fn full() -> ParticleFrame {
 #[test]
 fn what_is_written_is_read_back() {
     let folder = folder("round_trip");
-    for extension in ParticleFormat::EXTENSIONS {
+    let zipped = ["vtk.gz", "bgeo.gz", "ply.gz", "xyz.gz"];
+    let extensions = ParticleFormat::EXTENSIONS.into_iter().chain(zipped);
+    for extension in extensions.clone() {
         let path = folder.join("frame").with_extension(extension);
         for mut frame in [full(), dot(3.0), ParticleFrame::default()] {
-            if extension == "xyz" {
+            if extension.starts_with("xyz") {
                 frame = ParticleFrame {
                     positions: frame.positions,
                     ..default()
@@ -36,15 +38,21 @@ fn what_is_written_is_read_back() {
             let back = ParticleFrame::read(&path).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(back, frame, "{extension}");
         }
+        let is_zipped = fs::read(&path).unwrap().starts_with(b"\x1f\x8b");
+        assert_eq!(is_zipped, extension.ends_with(".gz"), "{extension}");
     }
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 4, "no leftovers");
+    let files = fs::read_dir(&folder).unwrap().count();
+    assert_eq!(files, extensions.count(), "no leftovers");
 }
 
 #[test]
 fn every_format_is_an_asset() {
     let folder = folder("assets");
     let mut app = app(&folder);
-    for extension in ParticleFormat::EXTENSIONS {
+    for extension in ParticleFormat::EXTENSIONS
+        .into_iter()
+        .chain(["bgeo.gz", "PLY"])
+    {
         let name = format!("frame.{extension}");
         full().write(&folder.join(&name)).unwrap();
         let handle = app.world().resource::<AssetServer>().load(&name);

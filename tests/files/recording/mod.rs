@@ -2,6 +2,7 @@
 
 mod background;
 mod files;
+mod formats;
 mod gates;
 mod interpolation;
 mod sources;

@@ -145,7 +145,7 @@ fn what_makes_no_sense_is_said_once_and_played_in_range() {
 fn a_damaged_frame_is_named_once_and_skipped() {
     let folder = folder("damaged");
     write_dots(&folder, [0, 1, 3, 4]);
-    fs::write(folder.join("dot_2.xyz"), b"no triples").unwrap();
+    fs::write(folder.join("dot_2.xyz"), [0; 13]).unwrap();
     let mut app = app(&folder);
     let recording = open(&app, slowly("dot_#.xyz"));
     let entity = play(&mut app, steps(recording).repeating());

@@ -1,190 +1,171 @@
-//! Houdini's classic `.bgeo`, plain or zipped: our own reader, whose memory is bounded by the
-//! file's size, and splashsurf's writer.
+//! Houdini's classic `.bgeo`.
 
-use std::io::Read;
-
-use bevy::prelude::*;
-use flate2::read::GzDecoder;
-use splashsurf_lib::io::bgeo_format::{
-    AttribDefinition, AttributeStorage, BgeoAttributeType, BgeoFile, BgeoHeader, write_bgeo_file,
+use super::{
+    content,
+    found::{Fault, Found},
+    number::Number,
+    role::{IDS, Role},
+    scan::Scan,
 };
+use crate::source::recording::frame::ParticleFrame;
 
-use super::{IDS, RADII, VELOCITIES, floats, ids, mean_radius};
-use crate::source::recording::ParticleFrame;
-
-/// The most bytes after unzipping: a few kilobytes can be zipped gigabytes of nothing.
-const MAX_BYTES: u64 = 1 << 30;
-/// Position and weight.
-const POINT: usize = 16;
+const MAGIC: &[u8] = b"BgeoV";
+const VERSION: i32 = 5;
+/// Position and weight. Unit: words of four bytes.
+const POINT: usize = 4;
+/// Types of attributes.
+const FLOAT: i32 = 0;
 const INTEGER: i32 = 1;
+const INDEX: i32 = 4;
+const VECTOR: i32 = 5;
 
-/// Memory and time are linear in the actual bytes, whatever the header claims.
-pub(super) fn read(bytes: &[u8]) -> Result<ParticleFrame, String> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return parse(Bytes(bytes));
-    }
-    let mut unzipped = Vec::new();
-    GzDecoder::new(bytes)
-        .take(MAX_BYTES + 1)
-        .read_to_end(&mut unzipped)
-        .map_err(|error| error.to_string())?;
-    if unzipped.len() as u64 > MAX_BYTES {
-        return Err(format!("it unfolds to more than {MAX_BYTES} bytes"));
-    }
-    parse(Bytes(&unzipped))
-}
-
-/// Where an attribute lies within a point.
+/// An attribute and where it lies within a point. Unit: words of four bytes.
 struct Place {
     name: String,
-    is_integer: bool,
+    number: Number,
     size: usize,
     offset: usize,
 }
 
-fn parse(mut bytes: Bytes) -> Result<ParticleFrame, String> {
-    if bytes.take(5)? != b"BgeoV" {
-        return Err("not a classic .bgeo file".into());
+/// Memory and time are linear in the actual bytes, whatever the header claims.
+pub(super) fn read(bytes: &[u8]) -> Result<Found, Fault> {
+    if !bytes.starts_with(MAGIC) && !MAGIC.starts_with(bytes) {
+        let what = content::described(bytes);
+        return Err(Fault::Unsupported(format!("no classic .bgeo: {what}")));
     }
-    let version = bytes.int()?;
-    if version != 5 {
-        return Err(format!("its version is {version}, not 5"));
+    let mut scan = Scan::new(bytes);
+    take(&mut scan, MAGIC.len())?;
+    let version = int(&mut scan)?;
+    if version != VERSION {
+        let reason = format!("its version is {version}, not {VERSION}");
+        return Err(Fault::Unsupported(reason));
     }
-    let points = bytes.int()?;
-    let _primitives_and_groups: [i32; 3] = [bytes.int()?, bytes.int()?, bytes.int()?];
-    let attributes = bytes.int()?;
-    let _other_attributes: [i32; 3] = [bytes.int()?, bytes.int()?, bytes.int()?];
-    if attributes < 0 {
-        return Err(format!("it has {attributes} attributes"));
-    }
+    let claimed = int(&mut scan)?;
+    let _primitives_and_groups = take(&mut scan, 12)?;
+    let attributes = int(&mut scan)?;
+    let _other_attributes = take(&mut scan, 12)?;
 
+    let mut found = Found::default();
     let mut places = Vec::new();
-    let mut stride = POINT;
+    let mut words = POINT;
     for _ in 0..attributes {
-        let length = bytes.short()?;
-        let name = String::from_utf8_lossy(bytes.take(length)?).into_owned();
-        let size = bytes.short()?;
-        let kind = bytes.int()?;
-        // Numbers and vectors.
-        if ![0, INTEGER, 5].contains(&kind) {
-            return Err(format!("an attribute is of the unknown kind {kind}"));
-        }
-        bytes.take(4 * size)?;
-        places.push(Place {
-            name,
-            is_integer: kind == INTEGER,
-            size,
-            offset: stride,
-        });
-        stride += 4 * size;
+        let place = attribute(&mut scan, words, &mut found)?;
+        words = words.saturating_add(place.size);
+        places.push(place);
     }
-
-    let all = usize::try_from(points)
+    let stride = words.saturating_mul(4);
+    let there = scan.rest().len() / stride;
+    let points = usize::try_from(claimed)
         .ok()
-        .and_then(|count| count.checked_mul(stride))
-        .filter(|&all| all <= bytes.0.len())
-        .ok_or_else(|| {
-            let there = bytes.0.len() / stride;
-            format!("it claims {points} points and holds {there}")
-        })?;
-    Ok(frame(&bytes.0[..all], stride, &places))
-}
+        .and_then(|count| scan.take(count.checked_mul(stride)?))
+        .ok_or_else(|| Fault::Damaged(format!("it claims {claimed} points and holds {there}")))?;
 
-fn frame(points: &[u8], stride: usize, places: &[Place]) -> ParticleFrame {
-    let points = || points.chunks_exact(stride);
-    let word = |at: &[u8]| [at[0], at[1], at[2], at[3]];
-    let float = |at: &[u8]| f32::from_be_bytes(word(at));
-    let vector = |at: &[u8]| vec3(float(at), float(&at[4..]), float(&at[8..]));
-    let find = |names: &[&str], size, is_integer| {
-        let fits = |place: &&Place| {
-            let is_named = names.contains(&place.name.as_str());
-            is_named && place.size == size && place.is_integer == is_integer
-        };
-        places.iter().find(fits).map(|place| place.offset)
+    let numbers = |number: Number, offset: usize, size: usize| -> Vec<f64> {
+        points
+            .chunks_exact(stride)
+            .flat_map(|point| point[4 * offset..][..4 * size].as_chunks::<4>().0)
+            .map(|word| number.big_endian(word))
+            .collect()
     };
-    ParticleFrame {
-        positions: points().map(vector).collect(),
-        ids: find(&IDS, 1, true).map_or_else(Vec::new, |offset| {
-            // The same bits as written: ids above 2³¹ come as negative numbers.
-            let id = |at: &[u8]| f64::from(u32::from_be_bytes(word(&at[offset..])));
-            ids(points().map(id))
-        }),
-        velocities: find(&VELOCITIES, 3, false).map_or_else(Vec::new, |offset| {
-            points().map(|at| vector(&at[offset..])).collect()
-        }),
-        radius: find(&RADII, 1, false)
-            .and_then(|offset| mean_radius(points().map(|at| float(&at[offset..])))),
+    found.set_positions(&numbers(Number::F32, 0, 3));
+    for place in places {
+        let numbers = || Ok(numbers(place.number, place.offset, place.size));
+        found.attribute(&place.name, place.size, numbers);
     }
+    Ok(found)
 }
 
-/// The bytes left to read.
-struct Bytes<'a>(&'a [u8]);
+/// The definition of an attribute, which lies at `offset` within each point.
+fn attribute(scan: &mut Scan, offset: usize, found: &mut Found) -> Result<Place, Fault> {
+    let length = short(scan)?;
+    let mut name = String::from_utf8_lossy(take(scan, length)?).into_owned();
+    let size = short(scan)?;
+    let number = match int(scan)? {
+        FLOAT | VECTOR => {
+            let _defaults = take(scan, 4 * size)?;
+            Number::F32
+        }
+        INTEGER => {
+            let _defaults = take(scan, 4 * size)?;
+            // The same bits as written: ids above 2³¹ come as negative numbers.
+            match Role::of(&name) {
+                Some(Role::Id) => Number::U32,
+                _ => Number::I32,
+            }
+        }
+        INDEX => {
+            for _ in 0..int(scan)? {
+                let length = short(scan)?;
+                take(scan, length)?;
+            }
+            found.leave_out(&name, "it holds strings");
+            // Its words are indices, whatever it is called.
+            name.clear();
+            Number::I32
+        }
+        kind => {
+            let reason = format!(
+                "its attribute `{}` is of the unknown kind {kind}",
+                name.escape_debug()
+            );
+            return Err(Fault::Unsupported(reason));
+        }
+    };
+    Ok(Place {
+        name,
+        number,
+        size,
+        offset,
+    })
+}
 
-impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
-        let (taken, left) = self.0.split_at_checked(count).ok_or("it is cut short")?;
-        self.0 = left;
-        Ok(taken)
-    }
+fn take<'a>(scan: &mut Scan<'a>, count: usize) -> Result<&'a [u8], Fault> {
+    scan.take(count)
+        .ok_or_else(|| Fault::Damaged("it is cut short".into()))
+}
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], String> {
-        let taken = self.take(N)?;
-        taken.try_into().map_err(|_| "it is cut short".into())
-    }
+fn int(scan: &mut Scan) -> Result<i32, Fault> {
+    let bytes = take(scan, 4)?;
+    Ok(Number::I32.big_endian(bytes) as i32)
+}
 
-    fn int(&mut self) -> Result<i32, String> {
-        Ok(i32::from_be_bytes(self.array()?))
-    }
-
-    fn short(&mut self) -> Result<usize, String> {
-        Ok(u16::from_be_bytes(self.array()?).into())
-    }
+fn short(scan: &mut Scan) -> Result<usize, Fault> {
+    let bytes = take(scan, 2)?;
+    Ok(Number::U16.big_endian(bytes) as usize)
 }
 
 pub(super) fn write(frame: &ParticleFrame, bytes: &mut Vec<u8>) -> Result<(), String> {
-    let count = frame.positions.len();
-    let mut definitions = Vec::new();
-    let mut data = Vec::new();
-    let mut attribute = |name: &str, size: usize, kind, storage| {
-        definitions.push(AttribDefinition {
-            name: name.into(),
-            size,
-            attr_type: kind,
-            default_values: vec![0; size],
-        });
-        data.push((name.to_owned(), storage));
-    };
-    if !frame.ids.is_empty() {
-        let numbers = frame.ids.iter().map(|&id| id.cast_signed()).collect();
-        let numbers = AttributeStorage::Int(numbers);
-        attribute("id", 1, BgeoAttributeType::Int, numbers);
+    let count = i32::try_from(frame.positions.len()).map_err(|error| error.to_string())?;
+    let attributes: Vec<(&str, u16, i32)> = [
+        (!frame.ids.is_empty()).then_some((IDS[0], 1, INTEGER)),
+        (!frame.velocities.is_empty()).then_some(("v", 3, VECTOR)),
+        frame.radius.is_some().then_some(("pscale", 1, FLOAT)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+
+    bytes.extend(MAGIC);
+    let header = [VERSION, count, 0, 0, 0, attributes.len() as i32, 0, 0, 0];
+    bytes.extend(header.into_iter().flat_map(i32::to_be_bytes));
+    for (name, size, kind) in attributes {
+        bytes.extend((name.len() as u16).to_be_bytes());
+        bytes.extend(name.as_bytes());
+        bytes.extend(size.to_be_bytes());
+        bytes.extend(kind.to_be_bytes());
+        let defaults = vec![0; 4 * usize::from(size)];
+        bytes.extend(defaults);
     }
-    if !frame.velocities.is_empty() {
-        let vectors = AttributeStorage::Vector(3, floats(&frame.velocities));
-        attribute("v", 3, BgeoAttributeType::Vector, vectors);
+    for (index, position) in frame.positions.iter().enumerate() {
+        let floats = position.extend(1.0).to_array();
+        bytes.extend(floats.into_iter().flat_map(f32::to_be_bytes));
+        let id = frame.ids.get(index).map(|id| id.to_be_bytes());
+        bytes.extend(id.into_iter().flatten());
+        let velocity = frame.velocities.get(index).map(bevy::math::Vec3::to_array);
+        bytes.extend(velocity.into_iter().flatten().flat_map(f32::to_be_bytes));
+        bytes.extend(frame.radius.into_iter().flat_map(f32::to_be_bytes));
     }
-    if let Some(radius) = frame.radius {
-        let radii = AttributeStorage::Float(vec![radius; count]);
-        attribute("pscale", 1, BgeoAttributeType::Float, radii);
-    }
-    let file = BgeoFile {
-        header: BgeoHeader {
-            magic_bytes: *b"Bgeo",
-            version_char: b'V',
-            version: 5,
-            num_points: i32::try_from(count).map_err(|error| error.to_string())?,
-            num_prims: 0,
-            num_point_groups: 0,
-            num_prim_groups: 0,
-            num_point_attrib: definitions.len() as i32,
-            num_vertex_attrib: 0,
-            num_prim_attrib: 0,
-            num_attrib: 0,
-        },
-        positions: AttributeStorage::Vector(3, floats(&frame.positions)),
-        weights: AttributeStorage::Float(vec![1.0; count]),
-        attribute_definitions: definitions,
-        attribute_data: data,
-    };
-    write_bgeo_file(&file, bytes, false).map_err(|error| error.to_string())
+    // The end of the file; no attribute is of the detail.
+    bytes.extend([0x00, 0xff]);
+    Ok(())
 }
