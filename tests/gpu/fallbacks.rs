@@ -95,10 +95,8 @@ fn a_lost_device_is_survived() {
 fn a_lost_device_is_survived_by_several_surfaces_in_a_multisampled_view() {
     let mut app = show(&VIEW, ScreenSpaceFluid::default(), |world| {
         scene(world);
-        world.spawn((
-            fluid(&[vec3(0.0, 0.0, -3.0)], 0.4, BULK),
-            FluidMaterial::MILK,
-        ));
+        let milk = fluid(&[vec3(0.0, 0.0, -3.0)], 0.4, BULK);
+        world.spawn(milk).insert(FluidMaterial::MILK);
     });
     look(&mut app, Msaa::Sample4);
     let before = capture(&mut app).unwrap();

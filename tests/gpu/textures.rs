@@ -114,10 +114,8 @@ fn textures_follow_a_surface_and_are_freed_with_it() {
 fn a_view_that_turns_away_keeps_no_textures() {
     let mut app = show(&VIEW, ScreenSpaceFluid::default(), |world| {
         pool(world);
-        world.spawn((
-            fluid(&[vec3(0.0, 0.0, -1.0)], 0.1, BULK),
-            FluidMaterial::MILK,
-        ));
+        let milk = fluid(&[vec3(0.0, 0.0, -1.0)], 0.1, BULK);
+        world.spawn(milk).insert(FluidMaterial::MILK);
     });
     look(&mut app, Msaa::Sample4);
     let seen = bytes(&app);

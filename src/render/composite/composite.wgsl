@@ -146,7 +146,9 @@ fn meeting_on(way: Way, low: vec2<f32>, high: vec2<f32>) -> f32 {
 // The scene's colour where the ray meets its depth. A ray that meets nothing up to its vanishing
 // point shows what is on screen there: the sky, or whatever has no depth, such as glass. `straight`
 // is the pixel itself, for rays that are lost behind something near the eye.
-fn background(straight: vec2<f32>, position: vec3<f32>, direction: vec3<f32>) -> vec4<f32> {
+fn background(
+    straight: vec2<f32>, position: vec3<f32>, direction: vec3<f32>, starts_on_screen: bool,
+) -> vec4<f32> {
     let track = track(position, direction);
     let way = way_of(track);
     let steps = clamp(ceil(length(way.step.xy) / STEP_PIXELS), 4.0, MAX_STEPS);
@@ -184,7 +186,7 @@ fn background(straight: vec2<f32>, position: vec3<f32>, direction: vec3<f32>) ->
     if hidden {
         return color_at(straight);
     }
-    if track.vanishes {
+    if track.vanishes && starts_on_screen {
         return color_at(way.start.xy + way.step.xy);
     }
     let is_clear = lighting.environment_intensity <= 0.0;
@@ -201,7 +203,10 @@ fn light(pixel: vec2<f32>, texel: vec2<i32>, exit: vec4<u32>, front: f32) -> vec
         behind = color_at(pixel_from_ndc(ndc));
     } else {
         let start = view_from_device(ndc, bitcast<f32>(exit.y));
-        behind = background(pixel, start, decode_normal(unpack2x16snorm(exit.z)));
+        let direction = decode_normal(unpack2x16snorm(exit.z));
+        // Beyond the screen it is clamped to the border.
+        let is_on_screen = all(uv > vec2(0.0)) && all(uv < vec2(1.0));
+        behind = background(pixel, start, direction, is_on_screen);
     }
     let own = textureLoad(radiance, texel, 0).rgb;
     let transmitted = transmitted_at(texel);

@@ -89,3 +89,37 @@ fn rain_shows_on_a_transparent_target() {
     let wet = picture.pixels().filter(|pixel| pixel.0[3] > 0).count();
     assert!(wet > 3000, "{wet}");
 }
+
+/// Bevy draws its atmosphere between opaque and transparent objects, in no order of its own. In
+/// several apps, since an open order may come out right by chance.
+#[test]
+fn an_atmosphere_is_seen_through_water() {
+    use bevy::{
+        light::{Atmosphere, atmosphere::ScatteringMedium},
+        pbr::AtmosphereSettings,
+    };
+    let seen: Vec<_> = (0..4)
+        .map(|_| {
+            let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
+                let medium = ScatteringMedium::earth(256, 256);
+                let medium = world.resource_mut::<Assets<ScatteringMedium>>().add(medium);
+                world.spawn(Atmosphere::earth(medium));
+                let up =
+                    Transform::from_xyz(0.0, 0.0, 0.0).looking_to(vec3(0.0, 0.2, -1.0), Vec3::Y);
+                let sky = (AtmosphereSettings::default(), Msaa::Off, up);
+                world.entity_mut(camera).insert(sky);
+                world.spawn((
+                    DirectionalLight::default(),
+                    Transform::default().looking_to(vec3(0.3, -1.0, 0.2), Vec3::Y),
+                ));
+            });
+            let picture = capture(&mut app).unwrap();
+            // Beside the water, and through its middle, which lies below the middle of the view.
+            [uvec2(10, 87), uvec2(80, 87)].map(|at| picture.get_pixel(at.x, at.y).0)
+        })
+        .collect();
+    let [sky, through] = seen[0];
+    assert!(sky[2] > 60, "there is a sky: {sky:?}");
+    assert!(differ(sky, through) < 40, "{sky:?} {through:?}");
+    assert!(seen.iter().all(|it| *it == seen[0]), "{seen:?}");
+}
