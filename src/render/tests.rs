@@ -256,11 +256,14 @@ fn every_composite_is_made() {
     let keys = pairs(&pairs(&parts, &formats), &pairs(&[1, 4], &BOTH));
     let keys = keys
         .into_iter()
-        .map(|((part, format), (samples, several))| CompositeKey {
-            format,
-            samples,
-            part,
-            several,
+        .flat_map(|((part, format), (samples, several))| {
+            BOTH.map(|atmosphere| CompositeKey {
+                format,
+                samples,
+                part,
+                atmosphere,
+                several,
+            })
         });
     assert_variants::<CompositePipeline>(keys.collect());
 }

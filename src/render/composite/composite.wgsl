@@ -5,7 +5,8 @@
     decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth,
     ndc_from_pixel, pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
 }
-#import bevy_fluid::render::optics::{environment, fogged, lighting}
+#import bevy_fluid::render::haze::haze_before
+#import bevy_fluid::render::optics::{environment, lighting}
 #import bevy_fluid::render::types::INSIDE_FRONT
 
 // Radiance, and the transmitted fraction of red.
@@ -210,12 +211,12 @@ fn light(pixel: vec2<f32>, texel: vec2<i32>, exit: vec4<u32>, front: f32) -> vec
     }
     let own = textureLoad(radiance, texel, 0).rgb;
     let transmitted = transmitted_at(texel);
-    // The fog before the liquid. What is behind is fogged as far as from the eye already, so that
-    // only the part of its light that the liquid takes is replaced by that of fog.
+    // What is behind lies in haze as far as from the eye already, so that only the part of its light
+    // that the liquid takes is replaced by that of the haze before the liquid.
     let is_outside = front < INSIDE_FRONT;
     let position = select(vec3(0.0), view_from_device(ndc_from_pixel(pixel), front), is_outside);
-    let fog = fogged(position);
-    let color = own * fog.transmitted + fog.added * (1.0 - transmitted)
+    let haze = haze_before(position, pixel / frame.view_size);
+    let color = own * haze.transmitted + haze.added * (1.0 - transmitted)
         + transmitted * behind.rgb;
     let taken = 1.0 - dot(transmitted, vec3(1.0 / 3.0));
     return vec4(color, mix(behind.a, 1.0, taken));

@@ -26,6 +26,8 @@ pub(crate) struct CompositeKey {
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
     pub(crate) part: CompositePart,
+    /// Whether the view has an atmosphere.
+    pub(crate) atmosphere: bool,
     /// Whether there are other surfaces, which may be visible through this one.
     pub(crate) several: bool,
 }
@@ -107,6 +109,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
         let shader_defs = defs([
             ("DEPTH_ALONE", !key.part.light()),
             ("SEVERAL", key.several),
+            ("ATMOSPHERE", key.atmosphere),
             ("DENSE", key.part == CompositePart::DenseDepth),
         ]);
         let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
@@ -144,6 +147,7 @@ impl Stage for CompositePipeline {
             format: variant.format,
             samples: variant.samples,
             part,
+            atmosphere: variant.atmosphere,
             several: variant.several,
         };
         parts.iter().map(key).collect()

@@ -1,10 +1,14 @@
 //! The light that falls on the surfaces of a view.
 
+mod aerial;
 mod extract;
 
 use bevy::{
     camera::visibility::RenderLayers,
-    pbr::{DistanceFog, ExtractedDirectionalLight},
+    pbr::{
+        DistanceFog, ExtractedDirectionalLight, GpuAtmosphereSettings,
+        resources::{AtmosphereTextures, GpuAtmosphere},
+    },
     prelude::*,
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
@@ -13,13 +17,15 @@ use bevy::{
         render_resource::{
             BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, SamplerBindingType,
             ShaderStages, ShaderType, TextureSampleType,
-            binding_types::{sampler, texture_cube, uniform_buffer},
+            binding_types::{sampler, texture_2d, texture_3d, texture_cube, uniform_buffer},
         },
         texture::{FallbackImage, GpuImage},
+        view::ExtractedView,
     },
     shader::load_shader_library,
 };
 
+use self::aerial::GpuAerial;
 use self::extract::{ViewSurroundings, extract_surroundings};
 use super::{
     frame::{FrameLayout, FrameStartup, Gpu, Group, Input, Offset, UniformArray},
@@ -50,6 +56,7 @@ struct GpuLighting {
     diffuse_intensity: f32,
     lights: [GpuDirectionalLight; MAX_LIGHTS],
     fog: GpuFog,
+    aerial: GpuAerial,
 }
 
 /// The layout of group 2 of passes that need light.
@@ -76,6 +83,8 @@ pub(super) fn plugin(app: &mut App) {
     FogShaderPlugin::add(app);
     load_shader_library!(app, "medium.wgsl");
     load_shader_library!(app, "optics.wgsl");
+    load_shader_library!(app, "aerial.wgsl");
+    load_shader_library!(app, "haze.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
@@ -105,6 +114,8 @@ fn init_layout(mut commands: Commands) {
                 cube(),
                 cube(),
                 sampler(SamplerBindingType::Filtering),
+                texture_3d(TextureSampleType::Float { filterable: true }),
+                texture_2d(TextureSampleType::Float { filterable: true }),
             ),
         ),
     )));
@@ -114,8 +125,10 @@ fn prepare_lighting(
     mut views: Query<(
         &ExtractedCamera,
         &FluidView,
+        &ExtractedView,
         Option<&ViewSurroundings>,
         Option<&DistanceFog>,
+        Option<(&GpuAtmosphere, &GpuAtmosphereSettings)>,
         &mut ViewLighting,
     )>,
     lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
@@ -129,7 +142,7 @@ fn prepare_lighting(
         image.is_some_and(|image| image.texture.depth_or_array_layers() == 6)
     };
     uniforms.clear();
-    for (camera, view, surroundings, fog, mut lighting) in &mut views {
+    for (camera, view, place, surroundings, fog, atmosphere, mut lighting) in &mut views {
         let clear_color = match camera.clear_color {
             ClearColorConfig::Custom(color) => color,
             _ => clear_color.0,
@@ -146,6 +159,9 @@ fn prepare_lighting(
                 illuminance: sun.illuminance,
             }),
             fog: GpuFog::new(fog),
+            aerial: atmosphere.map_or_else(default, |(atmosphere, settings)| {
+                GpuAerial::new(atmosphere, settings, place.world_from_view.translation())
+            }),
             ..default()
         };
         lighting.cubemaps = default();
@@ -167,7 +183,7 @@ fn prepare_lighting(
 }
 
 fn prepare_groups(
-    mut views: Query<&mut ViewLighting>,
+    mut views: Query<(&mut ViewLighting, Option<&AtmosphereTextures>)>,
     layout: Res<LightingLayout>,
     frame: Res<FrameLayout>,
     uniforms: Res<UniformArray<GpuLighting>>,
@@ -175,7 +191,16 @@ fn prepare_groups(
     fallback: Res<FallbackImage>,
     gpu: Gpu,
 ) {
-    for mut lighting in &mut views {
+    for (mut lighting, tables) in &mut views {
+        let (inscattering, transmittance) = tables.map_or(
+            (&fallback.d3.texture_view, &fallback.d2.texture_view),
+            |tables| {
+                (
+                    &tables.aerial_view_lut.default_view,
+                    &tables.transmittance_lut.default_view,
+                )
+            },
+        );
         // The fallback is white; an intensity of 0 hides it.
         let [environment, diffuse] = lighting.cubemaps.map(|id| {
             let image = id.and_then(|id| images.get(id)).unwrap_or(&fallback.cube);
@@ -190,6 +215,8 @@ fn prepare_groups(
                 environment,
                 diffuse,
                 Input::sampler(&frame.linear),
+                Input::view(inscattering),
+                Input::view(transmittance),
             ],
         );
     }

@@ -1,7 +1,7 @@
 // Light at an interface and beyond: Fresnel, refraction, highlights, the environment.
 #define_import_path bevy_fluid::render::optics
 
-#import bevy_fluid::fog::{Fog, Fogged, fog_over, glow}
+#import bevy_fluid::fog::Fog
 #import bevy_fluid::render::frame::{surface, view}
 
 const PI: f32 = 3.14159265;
@@ -12,6 +12,21 @@ struct DirectionalLight {
     direction_to_light: vec3<f32>,
     // lx, times the light's colour.
     illuminance: vec3<f32>,
+}
+
+// The atmosphere around the eye: see `aerial.wgsl`.
+struct Aerial {
+    // From the planet's centre.
+    up: vec3<f32>,
+    // Of the eye. Lengths are in units of the atmosphere.
+    radius: f32,
+    inner_radius: f32,
+    outer_radius: f32,
+    // Units of the atmosphere in a metre.
+    scale: f32,
+    // How far the table reaches, and in how many slices.
+    distance: f32,
+    slices: f32,
 }
 
 // The light that falls on the surfaces of a view.
@@ -29,6 +44,7 @@ struct Lighting {
     // Unused ones are all zero.
     lights: array<DirectionalLight, MAX_LIGHTS>,
     fog: Fog,
+    aerial: Aerial,
 }
 
 @group(2) @binding(0) var<uniform> lighting: Lighting;
@@ -129,17 +145,4 @@ fn even_light() -> vec3<f32> {
     }
     let around = select(vec3(0.0), sum / 6.0 * lighting.diffuse_intensity, lighting.diffuse_intensity > 0.0);
     return lighting.even_light + around;
-}
-
-// What the camera's fog does to light from a position in view space.
-fn fogged(position: vec3<f32>) -> Fogged {
-    let way = (view.world_from_view * vec4(position, 0.0)).xyz;
-    let distance = length(way);
-    let ray = way / max(distance, 1e-9);
-    var around_lights = vec3(0.0);
-    for (var i = 0u; i < MAX_LIGHTS; i += 1u) {
-        let light = lighting.lights[i];
-        around_lights += glow(lighting.fog, light.direction_to_light, light.illuminance, ray);
-    }
-    return fog_over(lighting.fog, distance, around_lights * view.exposure);
 }

@@ -4,7 +4,7 @@ use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::DepthPrepass,
     math::{Affine3A, Vec3A},
-    pbr::PrepassPipeline,
+    pbr::{PrepassPipeline, resources::AtmosphereTextures},
     prelude::*,
     render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
 };
@@ -59,6 +59,7 @@ pub(super) fn prepare_surfaces(
         &FluidView,
         Option<&MainPassResolutionOverride>,
         Has<DepthPrepass>,
+        Has<AtmosphereTextures>,
     )>,
     prepass: Option<Res<PrepassPipeline>>,
     mut painted: Query<(Entity, &mut ViewSurfaces)>,
@@ -76,7 +77,7 @@ pub(super) fn prepare_surfaces(
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
     }
-    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass) in &views {
+    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, atmosphere) in &views {
         if camera.physical_target_size.is_none() {
             continue;
         }
@@ -167,6 +168,7 @@ pub(super) fn prepare_surfaces(
                 format: view.target_format,
                 samples: msaa.samples(),
                 scene_depth,
+                atmosphere,
                 several: scratch.groups.len() > 1,
             };
             let depths = eye.depths(bounds);

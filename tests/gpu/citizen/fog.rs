@@ -148,3 +148,55 @@ fn rain_is_fogged() {
     let (clear, fogged) = (green(false), green(true));
     assert!(clear > 5.0 && fogged < 0.5 * clear, "{clear} {fogged}");
 }
+
+/// Kilometres away, where the air is blue: a black ball of liquid beside a black box.
+#[test]
+fn ink_lies_in_an_atmosphere_as_a_mesh_does() {
+    use bevy::{
+        light::{Atmosphere, atmosphere::ScatteringMedium},
+        pbr::AtmosphereSettings,
+    };
+    let mut app = headless_app(SIZE, |app| {
+        app.add_plugins(FluidPlugin::default())
+            .insert_resource(ClearColor(Color::BLACK));
+        let world = app.world_mut();
+        let medium = ScatteringMedium::earth(256, 256);
+        let medium = world.resource_mut::<Assets<ScatteringMedium>>().add(medium);
+        world.spawn(Atmosphere::earth(medium));
+        let far = Projection::Perspective(PerspectiveProjection {
+            far: 1e5,
+            ..default()
+        });
+        world.spawn((
+            Camera3d::default(),
+            ScreenSpaceFluid::default(),
+            AtmosphereSettings::default(),
+            Msaa::Off,
+            far,
+            Transform::from_xyz(0.0, 500.0, 0.0),
+        ));
+        world.spawn((
+            DirectionalLight::default(),
+            Transform::default().looking_to(vec3(0.3, -1.0, -0.2), Vec3::Y),
+        ));
+        let black = FluidMaterial {
+            refractive_index: 1.0,
+            ..FluidMaterial::INK
+        };
+        let ink = FluidParticles::new(ball(1000.0, 70.0), 70.0);
+        world.spawn((ink, black, Transform::from_xyz(-1200.0, 500.0, -7000.0)));
+        let size = Vec3::splat(1200.0);
+        paint(
+            world,
+            size,
+            unlit(Color::BLACK),
+            vec3(1200.0, 500.0, -6600.0),
+        );
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let picture = capture(&mut app).unwrap();
+    let [ink, mesh] = [55, 105].map(|x| picture.get_pixel(x, 60).0);
+    assert!(mesh[2] > 20, "the air is seen: {mesh:?}");
+    assert!(differ(ink, mesh) < 10, "ink {ink:?}, mesh {mesh:?}");
+}
