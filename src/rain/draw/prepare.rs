@@ -45,7 +45,7 @@ pub(crate) fn queue_rain(
     )>,
     lamps: Query<&ExtractedPointLight>,
     sun_lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
-    mut shelters: ResMut<Shelters>,
+    shelters: Res<Shelters>,
     mut buffers: ResMut<RainBuffers>,
     mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     functions: Res<DrawFunctions<Transparent3d>>,
@@ -76,7 +76,9 @@ pub(crate) fn queue_rain(
         let place = view.world_from_view.translation();
         let plan = Plan::new(rain.method, rain.distance, &eye);
         let mut gpu = GpuRain::new(extracted, &plan, &view.world_from_view, &eye, axis);
-        gpu.shelter(&mut shelters, place);
+        let reach = rain.distance.max(rain.extent);
+        buffers.dry.gather(&shelters, place, &eye, axis, reach);
+        gpu.shelters = buffers.dry.gpu();
         let layers = layers.unwrap_or_default();
         let suns_in_view = sun_lights.iter().filter(|(_, of)| of.intersects(layers));
         (gpu.suns, gpu.sun_count) = suns(suns_in_view.map(|(light, _)| light));
@@ -95,11 +97,16 @@ pub(crate) fn queue_rain(
             || gpu.environment_intensity > 0.0
             || gpu.sun_count > 0
             || rain.brightness <= 0.0;
-        let near = &buffers.near;
+        let (near, dry) = (&buffers.near, &buffers.dry);
         let keep = |content: Content| {
             move |quad: &mut GpuQuad| {
+                let reach = content.lit_reach(quad.size, axis);
+                let Some(shelters) = dry.around(quad.center, reach) else {
+                    return false;
+                };
+                quad.shelters = shelters;
                 if !near.is_empty() {
-                    quad.lamps = near.reaching(quad.center, content.lit_reach(quad.size, axis));
+                    quad.lamps = near.reaching(quad.center, reach);
                 }
                 always || quad.lamps != 0
             }
@@ -152,7 +159,8 @@ pub(crate) fn queue_rain(
         let scene = RainScene {
             suns: gpu.sun_count > 0,
             lamps: !buffers.near.is_empty(),
-            shelters: gpu.shelter_count > 0,
+            // In sight or not: few shaders are compiled as the camera turns.
+            shelters: !shelters.0.is_empty(),
         };
         let [backdrop, billboards, drops] =
             [RainPart::Backdrop, RainPart::Billboards, RainPart::Drops].map(|part| {
@@ -167,7 +175,10 @@ pub(crate) fn queue_rain(
                 };
                 // The backdrop is lit by the surroundings alone.
                 let wanted = of(if part == RainPart::Backdrop {
-                    RainScene::NOTHING
+                    RainScene {
+                        shelters: scene.shelters,
+                        ..RainScene::NOTHING
+                    }
                 } else {
                     scene
                 });
