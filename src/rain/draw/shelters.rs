@@ -250,4 +250,46 @@ mod tests {
         }
         assert!(whole > 100 && none > 100, "{whole}, {none}");
     }
+
+    /// No shelter is left out below which something may be seen, and most others are.
+    #[test]
+    fn what_is_seen_below_a_shelter_is_dry() {
+        let mut random = Random::new(9);
+        let (axis, reach) = (vec3(0.2, 1.0, -0.3).normalize(), 8.0);
+        let pose = Transform::from_xyz(1.0, 2.0, 3.0).looking_to(vec3(1.0, -0.2, 0.5), Vec3::Y);
+        let wide = OrthographicProjection::default_3d();
+        let orthographic = Mat4::orthographic_rh(-3.0, 3.0, -2.0, 2.0, wide.far, wide.near);
+        let perspective = Mat4::perspective_infinite_reverse_rh(0.8, 1.5, 0.1);
+        for clip_from_view in [perspective, orthographic] {
+            let eye = Eye::new(&pose.into(), &clip_from_view, reach, axis).unwrap();
+            let (mut seen, mut unseen) = (0, 0);
+            for _ in 0..300 {
+                let mut number = |size: f32| size * (random.next_f64() as f32 - 0.5);
+                let place = Transform {
+                    translation: pose.translation + vec3(number(30.0), number(30.0), number(30.0)),
+                    rotation: Quat::from_scaled_axis(vec3(number(6.0), number(6.0), number(6.0))),
+                    scale: Vec3::splat(0.5),
+                };
+                let half_size = vec3(2.0, 0.5, 4.0);
+                let mut places = DryPlaces::default();
+                let shelters = Shelters(vec![(place.into(), half_size)]);
+                places.gather(&shelters, pose.translation, &eye, axis, reach);
+                let box_from_world = place.compute_affine().inverse();
+                let is_dry = (0..2000).any(|_| {
+                    let mut number = |size: f32| size * (random.next_f64() as f32 - 0.5);
+                    let in_view = vec3(number(16.0), number(16.0), -number(8.0) - 4.0);
+                    let clip = clip_from_view * in_view.extend(1.0);
+                    let is_in_view = clip.truncate().truncate().abs().max_element() <= clip.w;
+                    let place = pose.transform_point(in_view);
+                    is_in_view && is_below(box_from_world, half_size, place, axis)
+                });
+                if places.places.is_empty() {
+                    assert!(!is_dry, "{place:?}");
+                    unseen += 1;
+                }
+                seen += u32::from(is_dry);
+            }
+            assert!(seen > 20 && unseen > 100, "{seen}, {unseen}");
+        }
+    }
 }
