@@ -7,7 +7,7 @@
 
 use std::time::{Duration, Instant};
 
-use bevy::{prelude::*, shader::Shader, time::TimeUpdateStrategy};
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_fluid::{emitter::EmittedParticles, prelude::*};
 
 const STEP: Duration = Duration::from_micros(16_667);
@@ -95,8 +95,7 @@ struct Watch {
 
 fn run(name: &str, scene: fn(&mut World, u32), count: usize, runs: usize) {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
-        .init_asset::<Shader>()
+    app.add_plugins((MinimalPlugins, TransformPlugin))
         .add_plugins(FluidPlugin::default())
         .insert_resource(TimeUpdateStrategy::ManualDuration(STEP))
         .init_resource::<Watch>()

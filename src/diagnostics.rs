@@ -38,14 +38,14 @@
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
     prelude::*,
-    render::diagnostic::RenderDiagnosticsPlugin,
+    render::{RenderApp, diagnostic::RenderDiagnosticsPlugin},
 };
 
 #[cfg(feature = "recordings")]
 use crate::source::recording::LoadedFrames;
 use crate::{
-    FluidSystems, emitter::EmittedParticles, particles::ShapedFluid, render::TextureMemory,
-    shape::ShapeTimes,
+    FluidSystems, emitter::EmittedParticles, needs::log_late_renderer, particles::ShapedFluid,
+    render::TextureMemory, shape::ShapeTimes,
 };
 
 /// Particles of all fluids, dropped ones included.
@@ -104,7 +104,8 @@ pub struct FluidDiagnosticsPlugin;
 
 impl Plugin for FluidDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
-        if !app.is_plugin_added::<RenderDiagnosticsPlugin>() {
+        let is_measured = app.is_plugin_added::<RenderDiagnosticsPlugin>();
+        if app.get_sub_app(RenderApp).is_some() && !is_measured {
             app.add_plugins(RenderDiagnosticsPlugin);
         }
         for path in [PARTICLES, BULK, INTERIOR, SPRAY, DROPPED, EMITTED] {
@@ -127,6 +128,13 @@ impl Plugin for FluidDiagnosticsPlugin {
         app.register_diagnostic(count(SALVA_PARTICLES))
             .register_diagnostic(time(SALVA_STEP))
             .add_systems(PostUpdate, measure_salva.after(measured));
+    }
+
+    fn finish(&self, app: &mut App) {
+        let is_measured = app.is_plugin_added::<RenderDiagnosticsPlugin>();
+        if app.get_sub_app(RenderApp).is_some() && !is_measured {
+            log_late_renderer("FluidDiagnosticsPlugin", "measures no pass");
+        }
     }
 }
 

@@ -78,6 +78,12 @@
 //! [`FluidDiagnosticsPlugin`] records counts and times in Bevy's `DiagnosticsStore`, where any
 //! other tool can read them: see [`diagnostics`] for the paths.
 //!
+//! # Without a renderer
+//!
+//! On a server, with `MinimalPlugins` alone, all plugins run: emitters emit, liquids are simulated
+//! and recorded, and fluids are shaped. Only players need more, Bevy's `AssetPlugin`. In a program
+//! that draws, the plugins are added after `DefaultPlugins`.
+//!
 //! # Sources
 //!
 //! The depth layers, the plane fit and the order of refractions come from T. Imai's master's thesis
@@ -92,7 +98,9 @@
 //! 32-bit floats, with the fifty hard cases that are tested.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![warn(clippy::disallowed_methods)]
 
+mod clock;
 pub mod diagnostics;
 #[cfg(all(test, feature = "published"))]
 mod every_setting;
@@ -101,6 +109,7 @@ mod fog;
 pub mod inspector;
 pub mod material;
 mod medium;
+mod needs;
 mod plugins;
 pub mod rain;
 mod random;

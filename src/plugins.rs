@@ -1,6 +1,6 @@
 //! The plugin that draws fluids, and the group of all plugins with a part in the picture.
 
-use bevy::{app::PluginGroupBuilder, prelude::*};
+use bevy::{app::PluginGroupBuilder, prelude::*, render::RenderApp};
 
 #[cfg(feature = "recordings")]
 use crate::recording::RecordingPlugin;
@@ -9,9 +9,10 @@ use crate::salva::SalvaPlugin;
 use crate::{
     emitter,
     material::FluidMaterial,
+    needs::{log_late_renderer, need_time},
     particles::{self, FluidParticles},
     rain::RainPlugin,
-    render::{self, LayerBlending},
+    render::{self, LayerBlending, PlanReports},
     schedule,
     settings::{FluidDebugView, ScreenSpaceFluid, check},
     shape::SurfaceKernel,
@@ -46,6 +47,9 @@ impl PluginGroup for FluidPlugins {
 }
 
 /// Shapes and draws particle fluids, and runs their emitters.
+///
+/// Without a renderer, as on a server with `MinimalPlugins`, it does all but draw. Add it after
+/// `DefaultPlugins`, if you add those.
 #[derive(Clone, Copy, Debug)]
 pub struct FluidPlugin {
     /// How the depth layers are drawn; leave it at its default unless you test adapters.
@@ -84,5 +88,13 @@ impl Plugin for FluidPlugin {
         .register_type::<SurfaceKernel>()
         .register_type::<ScreenSpaceFluid>()
         .register_type::<FluidDebugView>();
+    }
+
+    fn finish(&self, app: &mut App) {
+        need_time(app, "FluidPlugin");
+        let renderer = app.get_sub_app(RenderApp);
+        if renderer.is_some_and(|it| !it.world().contains_resource::<PlanReports>()) {
+            log_late_renderer("FluidPlugin", "draws nothing");
+        }
     }
 }

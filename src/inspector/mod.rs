@@ -24,6 +24,11 @@
 //! 0.40, and 0.38 Bevy 0.20. A closed window costs nothing: if the program has no [`EguiPlugin`] of
 //! its own, egui does not run either.
 //!
+//! The window is part of the primary egui context. If its camera has ended, is inactive or has lost
+//! its target, another camera is given a context while the window is open: the primary one if there
+//! is none, with which the program's own windows come back. The program may give it to any camera at
+//! any time. The contents and places of windows remain.
+//!
 //! To keep the camera still while the pointer is over the window, add
 //! `run_if(not(inspector_wants_pointer))` to the system that moves it.
 
@@ -38,7 +43,7 @@ mod window;
 
 use std::any::TypeId;
 
-use bevy::{prelude::*, reflect::GetTypeRegistration};
+use bevy::{prelude::*, reflect::GetTypeRegistration, render::RenderApp};
 use bevy_egui::{
     EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass,
     input::EguiWantsInput,
@@ -47,11 +52,13 @@ use bevy_egui::{
 pub use presets::{Presets, ReflectPresets};
 pub use rust_code::{rust_code, spawn_code};
 
+use self::context::{InspectorContext, InspectorPass};
 use crate::{
     FluidSystems,
     diagnostics::FluidDiagnosticsPlugin,
     emitter::{ParticleCollider, ParticleEmitter},
     material::FluidMaterial,
+    needs::log_late_renderer,
     particles::FluidParticles,
     rain::{Rain, RainShelter, RainStreakSettings},
     schedule,
@@ -60,7 +67,8 @@ use crate::{
 };
 
 /// Adds the inspector: see [`inspector`](crate::inspector). It adds [`EguiPlugin`] and
-/// [`FluidDiagnosticsPlugin`] if they are missing; otherwise add it after them.
+/// [`FluidDiagnosticsPlugin`] if they are missing; otherwise add it after them. Without a renderer
+/// nothing is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct FluidInspectorPlugin {
     /// The key that opens and closes the window. Default: F1.
@@ -114,16 +122,6 @@ impl FluidInspector {
 
 impl Plugin for FluidInspectorPlugin {
     fn build(&self, app: &mut App) {
-        if !app.is_plugin_added::<EguiPlugin>() {
-            app.add_plugins(EguiPlugin {
-                // There is one texture, that of the letters.
-                bindless_mode_array_size: None,
-            });
-            app.world_mut()
-                .resource_mut::<EguiGlobalSettings>()
-                .auto_create_primary_context = false;
-            app.add_plugins(context::plugin);
-        }
         if !app.is_plugin_added::<FluidDiagnosticsPlugin>() {
             app.add_plugins(FluidDiagnosticsPlugin);
         }
@@ -156,17 +154,43 @@ impl Plugin for FluidInspectorPlugin {
             .show::<crate::source::salva::SalvaBody>()
             .show::<crate::source::salva::SalvaSettings>();
         app.insert_resource(inspector)
-            .add_plugins((presets::plugin, presets::views::plugin))
-            .add_systems(Update, toggle)
-            .add_systems(EguiPrimaryContextPass, window::show.run_if(is_open))
+            .add_plugins((presets::plugin, presets::views::plugin));
+        #[cfg(feature = "salva")]
+        app.add_plugins(presets::salva::plugin);
+        if app.get_sub_app(RenderApp).is_none() {
+            // Nobody would see it.
+            return;
+        }
+        let is_shared = app.is_plugin_added::<EguiPlugin>();
+        if !is_shared {
+            app.add_plugins(EguiPlugin {
+                // There is one texture, that of the letters.
+                bindless_mode_array_size: None,
+            });
+            app.world_mut()
+                .resource_mut::<EguiGlobalSettings>()
+                .auto_create_primary_context = false;
+        }
+        context::plugin(app, is_shared);
+        app.add_systems(Update, toggle)
+            .add_systems(
+                EguiPrimaryContextPass,
+                window::show.run_if(is_open).run_if(context::is_primary),
+            )
+            .add_systems(InspectorPass, window::show.run_if(is_open))
             // What is set in the window takes effect in the same frame.
             .configure_sets(
                 PostUpdate,
                 EguiPostUpdateSet::EndPass.before(FluidSystems::Check),
             );
         schedule::order(app);
-        #[cfg(feature = "salva")]
-        app.add_plugins(presets::salva::plugin);
+    }
+
+    fn finish(&self, app: &mut App) {
+        let is_shown = app.world().contains_resource::<InspectorContext>();
+        if app.get_sub_app(RenderApp).is_some() && !is_shown {
+            log_late_renderer("FluidInspectorPlugin", "shows nothing");
+        }
     }
 }
 

@@ -11,7 +11,10 @@ use bevy_egui::egui::{self, Align, Color32, Layout, RichText, Ui};
 use egui_plot::{Line, Plot};
 
 use super::widgets::WIDTH;
-use crate::diagnostics::{PASSES, RAIN_PASSES, SHAPE_TOTAL, cpu_time, gpu_time};
+use crate::{
+    clock,
+    diagnostics::{PASSES, RAIN_PASSES, SHAPE_TOTAL, cpu_time, gpu_time},
+};
 
 /// Which times are plotted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,7 +105,7 @@ fn current<'a>(
 }
 
 pub(super) fn show(ui: &mut Ui, store: &DiagnosticsStore, clock: &mut Clock) {
-    let now = Instant::now();
+    let now = clock::now();
     let stages = Stage::all(store, now);
     ui.horizontal(|ui| {
         ui.selectable_value(clock, Clock::Gpu, "GPU");

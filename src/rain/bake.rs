@@ -1,17 +1,15 @@
 //! Bakes the textures of streaks for the current settings, without holding up a frame.
 
-use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicU32, Ordering},
-    },
-    time::Instant,
+use std::sync::{
+    Arc,
+    atomic::{AtomicU32, Ordering},
 };
 
 use bevy::{
     asset::RenderAssetUsages,
     diagnostic::{DiagnosticPath, Diagnostics},
     image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    platform::time::Instant,
     prelude::*,
     render::render_resource::{
         Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
@@ -25,7 +23,7 @@ use super::{
     settings::{LONGEST_FRAME, Rain, RainStreakSettings},
     streaks::{HEIGHT, MIP_LEVELS, STEPS, StreakInput, Streaks, VARIANTS, WIDTH, bake},
 };
-use crate::settings::Checked;
+use crate::{clock::now, settings::Checked};
 
 /// Progress of drawing the textures, 0 to 1.
 pub const BAKE_PROGRESS: DiagnosticPath = DiagnosticPath::const_new("rain/bake_progress");
@@ -175,7 +173,7 @@ fn start(input: StreakInput) -> RunningBake {
     RunningBake {
         input,
         done,
-        start: Instant::now(),
+        start: now(),
         task,
     }
 }

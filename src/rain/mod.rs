@@ -33,8 +33,8 @@
 //! - A texture holds four nested densities of drops, so that rain of any rate, and voxels of any
 //!   depth, are mixed from one texel with the correct variance of pixels over time.
 //!
-//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs. Rain beyond
-//! the streaks is lit only by the surroundings: ambient light, and environment map or sky box.
+//! Lights cast no shadows into the rain; a [`RainShelter`] keeps it dry under roofs, near and far.
+//! Rain beyond the streaks is lit only by the surroundings: ambient light, and environment map or sky box.
 
 mod bake;
 pub(crate) mod births;
@@ -49,6 +49,7 @@ pub mod streaks;
 use bevy::{
     diagnostic::{Diagnostic, RegisterDiagnostic},
     prelude::*,
+    render::RenderApp,
 };
 
 #[doc(hidden)]
@@ -60,11 +61,13 @@ pub use self::{
     settings::{Exposure, Rain, RainMethod, RainShelter, RainStreakSettings},
 };
 use crate::{
+    needs::log_late_renderer,
     schedule::FluidSystems,
     settings::{Checked, check},
 };
 
-/// Draws rain for cameras with [`Rain`]; independent of `FluidPlugin`.
+/// Draws rain for cameras with [`Rain`]; independent of `FluidPlugin`. Add it after
+/// `DefaultPlugins`; without a renderer it does nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RainPlugin {
     /// Whether the app waits for the textures of streaks instead of drawing them in the background:
@@ -86,21 +89,35 @@ impl Plugin for RainPlugin {
             .insert_resource(bake::SynchronousBake(self.synchronous_bake))
             .register_diagnostic(Diagnostic::new(BAKE_PROGRESS).with_max_history_length(1))
             .register_diagnostic(Diagnostic::new(BAKE_TIME).with_suffix(" ms"))
-            .add_systems(
+            .configure_sets(
                 PostUpdate,
-                (
-                    settings::check_places,
-                    // A program without a renderer may have no images.
-                    bake::bake_streaks.run_if(resource_exists::<Assets<Image>>),
-                    advance_clocks,
-                )
-                    .chain()
+                RainSystems
                     .after(FluidSystems::Check)
                     .after(TransformSystems::Propagate),
             )
-            .add_plugins(draw::RainDrawPlugin);
+            .add_systems(PostUpdate, settings::check_places.in_set(RainSystems));
+        // Without a renderer nobody sees the streaks.
+        if app.get_sub_app(RenderApp).is_some() {
+            app.add_plugins(draw::RainDrawPlugin).add_systems(
+                PostUpdate,
+                (bake::bake_streaks, advance_clocks)
+                    .chain()
+                    .in_set(RainSystems),
+            );
+        }
+    }
+
+    fn finish(&self, app: &mut App) {
+        let is_drawn = app.is_plugin_added::<draw::RainDrawPlugin>();
+        if app.get_sub_app(RenderApp).is_some() && !is_drawn {
+            log_late_renderer("RainPlugin", "draws nothing");
+        }
     }
 }
+
+/// Where settings, places and the rest of what rain is drawn from are known.
+#[derive(SystemSet, Clone, Copy, Debug, Hash, PartialEq, Eq)]
+struct RainSystems;
 
 fn advance_clocks(
     mut cameras: Query<(&Checked<Rain>, &GlobalTransform, &mut RainClock)>,

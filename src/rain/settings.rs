@@ -151,8 +151,9 @@ impl Exposure {
 
 /// A box that keeps rain off: it is dry inside and below it, along the fall of the drops.
 ///
-/// The entity's `GlobalTransform` places the box; only the eight shelters nearest to a camera
-/// count. One whose transform has no inverse keeps no rain off.
+/// The entity's `GlobalTransform` places the box, which may move. Of those that a camera sees, the
+/// 64 count whose dry places, the boxes and what is below them, are nearest. A shelter whose
+/// transform has no inverse keeps no rain off.
 ///
 /// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]

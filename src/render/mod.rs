@@ -79,6 +79,12 @@ pub(crate) struct FluidRenderPlugin {
 
 impl Plugin for FluidRenderPlugin {
     fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            // No shader is needed, and there may be no assets to hold them.
+            app.init_resource::<PlanReports>()
+                .init_resource::<TextureMemory>();
+            return;
+        }
         surface::plugin(app, self.shortcuts, frame::support::can_draw_fluids);
         frame::plugin(app, self.layer_blending);
         lighting::plugin(app);

@@ -37,8 +37,6 @@ mod splats;
 #[cfg(test)]
 mod tests;
 
-use std::time::Instant;
-
 use bevy::math::Vec3;
 use thiserror::Error;
 
@@ -50,7 +48,10 @@ use classify::Classes;
 use grid::Grid;
 use neighborhood::Neighborhood;
 
-use crate::settings::{SettingError, SettingRange, Settings};
+use crate::{
+    clock::now,
+    settings::{SettingError, SettingRange, Settings},
+};
 
 /// Number of sorted particles per task. Fixed, so that tasks, and thus all rounding, are
 /// deterministic for any number of threads.
@@ -114,7 +115,7 @@ impl ShapeWorkspace {
             return Ok(());
         }
 
-        let start = Instant::now();
+        let start = now();
         let reach = kernel.neighbor_radius * radius;
         self.grid.build(positions, reach);
         out.times.grid = start.elapsed();

@@ -1,6 +1,6 @@
 //! The columns of a fluid's particles.
 
-use bevy::{prelude::*, shader::Shader};
+use bevy::prelude::*;
 use bevy_fluid::{
     FluidPlugin,
     particles::{FluidParticles, ShapedFluid},
@@ -11,8 +11,7 @@ use fluid_stage::log;
 fn a_column_of_another_length_is_ignored_and_logged_once() {
     log::listen();
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
-        .init_asset::<Shader>()
+    app.add_plugins((MinimalPlugins, TransformPlugin))
         .add_plugins(FluidPlugin::default());
     app.finish();
     app.cleanup();

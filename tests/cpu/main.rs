@@ -6,6 +6,7 @@ mod oracle;
 
 mod columns;
 mod emitter;
+mod headless;
 mod random_clouds;
 mod readme;
 mod salva;

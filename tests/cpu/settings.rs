@@ -1,6 +1,6 @@
 //! Settings out of range: what is drawn and simulated reads a clamped copy, and one line is logged.
 
-use bevy::{prelude::*, shader::Shader};
+use bevy::prelude::*;
 use bevy_fluid::{
     prelude::*,
     settings::{PlaneFit, Smoothing, Window},
@@ -12,8 +12,7 @@ use fluid_stage::log;
 fn app() -> (App, Entity) {
     log::listen();
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
-        .init_asset::<Shader>()
+    app.add_plugins((MinimalPlugins, TransformPlugin))
         .add_plugins(FluidPlugins);
     app.finish();
     app.cleanup();

@@ -6,7 +6,6 @@ use bevy::{
     ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
     render::{ExtractSchedule, Render, RenderApp, camera::CameraRenderGraph},
-    shader::Shader,
 };
 use bevy_fluid::{
     emitter::EmittedParticles,
@@ -23,7 +22,6 @@ const STEP: Duration = Duration::from_millis(16);
 fn app() -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, AssetPlugin::default()))
-        .init_asset::<Shader>()
         .add_plugins((FluidPlugin::default(), RecordingPlugin))
         .edit_schedule(PostUpdate, |schedule| {
             schedule.set_executor(SingleThreadedExecutor::new());

@@ -9,21 +9,23 @@ mod subjects;
 
 use bevy::{diagnostic::DiagnosticsStore, prelude::*, reflect::TypeRegistry};
 use bevy_egui::{
-    EguiContext, PrimaryEguiContext,
+    EguiContext,
     egui::{self, CollapsingHeader, ComboBox, ScrollArea, Ui},
 };
 
 use self::{counts::counts, debug_view::debug_view, section::component, subjects::Subjects};
 use super::{
-    FluidInspector, skipped, spawn_code, times,
+    FluidInspector,
+    context::InspectorContext,
+    skipped, spawn_code, times,
     widgets::{self, WIDTH},
 };
 use crate::settings::ScreenSpaceFluid;
 
-/// Shows the window in the primary context.
+/// Shows the window in the context of the camera chosen for it.
 pub(in crate::inspector) fn show(world: &mut World, mut clock: Local<times::Clock>) {
-    let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
-    let Ok(mut context) = contexts.single_mut(world) else {
+    let camera = world.resource::<InspectorContext>().camera();
+    let Some(mut context) = camera.and_then(|it| world.get_mut::<EguiContext>(it)) else {
         return;
     };
     // A handle to the same context.

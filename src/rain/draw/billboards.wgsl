@@ -17,6 +17,7 @@ struct Varying {
     @location(5) @interpolate(flat) hash: u32,
     @location(6) @interpolate(flat) lamps: u32,
     @location(7) @interpolate(flat) level: u32,
+    @location(8) @interpolate(flat) shelters: vec2<u32>,
 }
 
 // Opacities below this change no pixel.
@@ -42,6 +43,7 @@ fn vertex(@builtin(vertex_index) corner: u32, quad: Voxel) -> Varying {
     out.hash = quad.hash;
     out.lamps = quad.lamps;
     out.level = quad.level;
+    out.shelters = quad.shelters;
     return out;
 }
 
@@ -119,7 +121,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let opacity = min(opacity_of_streaks(in, mip) * counts, 1.0);
     let ends = vec2(distance - 0.5 * level.size, min(distance + 0.5 * level.size, end));
     let drop = drop_position(in, ray, across, distance, ends, mip);
-    if opacity < LEAST || is_sheltered(drop) {
+    if opacity < LEAST || is_sheltered(drop, in.shelters) {
         discard;
     }
     return over(in_fog(in.light + lamplight(drop, ray, in.lamps), drop, ray), opacity);

@@ -9,6 +9,7 @@ use super::{
     gpu_types::GpuRain,
     lights::NearLights,
     quads::{MAX_SHELLS, RainQuads},
+    shelters::DryPlaces,
 };
 use crate::rain::bake::LostDevices;
 
@@ -22,6 +23,7 @@ pub(crate) struct RainBuffers {
     /// its drops.
     pub(crate) items: [Entity; MAX_SHELLS + 2],
     pub(crate) near: NearLights,
+    pub(crate) dry: DryPlaces,
 }
 
 /// Creates what all views share; on another device than before, drops what the lost one held.
@@ -38,6 +40,7 @@ pub(crate) fn init_rain_buffers(
             drop_indices: None,
             items,
             near: NearLights::default(),
+            dry: DryPlaces::default(),
         });
         return;
     };

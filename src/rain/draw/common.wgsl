@@ -2,7 +2,7 @@
 #define_import_path bevy_fluid::rain::draw::common
 
 #import bevy_fluid::fog::{fog_over, glow}
-#import bevy_fluid::rain::draw::types::GpuRain
+#import bevy_fluid::rain::draw::types::{DRY_PLANES, GpuRain}
 #import bevy_render::view::{View, frag_coord_to_ndc}
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -110,22 +110,20 @@ fn lamplight(position: vec3<f32>, ray: vec3<f32>, lamps: u32) -> vec3<f32> {
     return light;
 }
 
-// Whether a shelter lies above a position, along the fall of the drops.
-fn is_sheltered(position: vec3<f32>) -> bool {
+// Whether one of the shelters lies above a position, along the fall of the drops.
+fn is_sheltered(position: vec3<f32>, shelters: vec2<u32>) -> bool {
 #ifdef SHELTERS
-    for (var i = 0u; i < rain.shelter_count; i += 1u) {
-        let local_from_relative = rain.shelters[i].local_from_relative;
-        let start = (local_from_relative * vec4(position, 1.0)).xyz;
-        let up = (local_from_relative * vec4(rain.axis, 0.0)).xyz;
-        let half_size = rain.shelters[i].half_size;
-        // Not quite parallel to any side.
-        let inverse = 1.0 / select(up, vec3(1e-12), abs(up) < vec3(1e-12));
-        let a = (-half_size - start) * inverse;
-        let b = (half_size - start) * inverse;
-        let enter = max(max(min(a.x, b.x), min(a.y, b.y)), min(a.z, b.z));
-        let leave = min(min(max(a.x, b.x), max(a.y, b.y)), max(a.z, b.z));
-        if leave >= max(enter, 0.0) {
-            return true;
+    for (var word = 0u; word < 2u; word += 1u) {
+        for (var left = shelters[word]; left != 0u; left &= left - 1u) {
+            let shelter = 32u * word + firstTrailingBit(left);
+            var depth = FAR;
+            for (var i = 0u; i < DRY_PLANES; i += 1u) {
+                let plane = rain.shelters.places[shelter].planes[i];
+                depth = min(depth, dot(plane.xyz, position) + plane.w);
+            }
+            if depth >= 0.0 {
+                return true;
+            }
         }
     }
 #endif

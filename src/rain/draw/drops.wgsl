@@ -85,7 +85,7 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let across = select(view_depth * sqrt(max(1.0 - along_view * along_view, 0.0)), length(off), is_perspective);
     let is_far = far > rain.drops_reach || across > rain.drops_end;
     // Nearer than the near plane, or behind.
-    if a.z > a.w || b.z > b.w || a.w <= 0.0 || b.w <= 0.0 || is_far || is_sheltered(middle) {
+    if a.z > a.w || b.z > b.w || a.w <= 0.0 || b.w <= 0.0 || is_far || is_sheltered(middle, cell.shelters) {
         return nothing();
     }
     let screen = 0.5 * view.main_pass_viewport.zw;

@@ -11,8 +11,11 @@ pub(crate) const LEVEL_COUNT: usize = 4;
 pub(crate) const MAX_LIGHTS: usize = 32;
 /// Maximum number of directional lights for rain.
 pub(crate) const MAX_SUNS: usize = 4;
-/// Maximum number of shelters: those nearest to the camera.
-pub(crate) const MAX_SHELTERS: usize = 8;
+/// Maximum number of shelters in a view: those nearest to the camera.
+pub(crate) const MAX_SHELTERS: usize = 64;
+/// Half-spaces whose intersection is dry: above each of a box's slabs, and at its six sides as seen
+/// along the fall.
+pub(crate) const DRY_PLANES: usize = 9;
 /// Terminal velocities in steps of 0.1 mm, four to a vector.
 pub(crate) const SPEED_VECTORS: usize = 16;
 
@@ -41,10 +44,24 @@ pub(crate) struct GpuRainSun {
     pub(crate) illuminance: Vec3,
 }
 
-#[derive(Clone, Copy, Default, ShaderType)]
+#[derive(Clone, Copy, Debug, Default, ShaderType)]
 pub(crate) struct GpuShelter {
-    pub(crate) local_from_relative: Mat4,
-    pub(crate) half_size: Vec3,
+    pub(crate) planes: [Vec4; DRY_PLANES],
+}
+
+#[derive(Clone, Copy, ShaderType)]
+pub(crate) struct GpuShelters {
+    pub(crate) count: u32,
+    pub(crate) places: [GpuShelter; MAX_SHELTERS],
+}
+
+impl Default for GpuShelters {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            places: [GpuShelter::default(); MAX_SHELTERS],
+        }
+    }
 }
 
 #[derive(Clone, Copy, Default, ShaderType)]
@@ -60,7 +77,6 @@ pub(crate) struct GpuRain {
     pub(crate) extent: f32,
     pub(crate) brightness: f32,
     pub(crate) sun_count: u32,
-    pub(crate) shelter_count: u32,
     pub(crate) fallen_tiles: i32,
     pub(crate) fallen: f32,
     pub(crate) drops_end: f32,
@@ -77,7 +93,7 @@ pub(crate) struct GpuRain {
     pub(crate) levels: [GpuRainLevel; LEVEL_COUNT],
     pub(crate) lights: [GpuRainLight; MAX_LIGHTS],
     pub(crate) suns: [GpuRainSun; MAX_SUNS],
-    pub(crate) shelters: [GpuShelter; MAX_SHELTERS],
+    pub(crate) shelters: GpuShelters,
     pub(crate) fog: GpuFog,
 }
 
@@ -93,4 +109,5 @@ pub(crate) struct GpuQuad {
     pub(crate) hash: u32,
     pub(crate) lamps: u32,
     pub(crate) level: u32,
+    pub(crate) shelters: [u32; MAX_SHELTERS / 32],
 }

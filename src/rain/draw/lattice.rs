@@ -133,6 +133,25 @@ impl Eye {
             && center.dot(self.forward) >= -radius
     }
 
+    /// Whether something of a box, or of what is below it along `axis`, is within `margin` of the
+    /// visible volume up to `reach`. The box is around `center`, half as long as its `arms`.
+    pub(crate) fn sees_below(
+        &self,
+        center: Vec3,
+        arms: [Vec3; 3],
+        axis: Vec3,
+        reach: f32,
+        margin: f32,
+    ) -> bool {
+        let ends = [self.forward.extend(0.0), (-self.forward).extend(reach)];
+        self.planes.iter().chain(&ends).all(|plane| {
+            let normal = plane.truncate();
+            let half: f32 = arms.iter().map(|arm| normal.dot(*arm).abs()).sum();
+            // What is below has no end.
+            normal.dot(axis) < 0.0 || normal.dot(center) + plane.w + half >= -margin
+        })
+    }
+
     /// Whether a ball of radius `range` around a place reaches the visible volume.
     pub(crate) fn is_reached_from(&self, place: Vec3, range: f32) -> bool {
         place.distance_squared(place.clamp(self.low, self.high)) < range * range
@@ -276,6 +295,7 @@ pub(crate) fn add_voxels(
                         hash: hash([x as u32, z as u32, index as u32]),
                         lamps: 0,
                         level: index as u32,
+                        shelters: default(),
                     };
                     if keep(&mut quad) {
                         quads.push(quad);

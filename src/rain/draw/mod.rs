@@ -9,6 +9,7 @@ mod lights;
 mod pipeline;
 mod prepare;
 mod quads;
+mod shelters;
 #[cfg(test)]
 mod tests;
 mod view;
@@ -37,6 +38,7 @@ pub use self::quads::RainQuads;
 use super::{bake::LostDevices, settings::Rain};
 use crate::{fog::FogShaderPlugin, render::FluidPasses};
 
+/// It needs the renderer.
 pub(crate) struct RainDrawPlugin;
 
 impl Plugin for RainDrawPlugin {
@@ -48,10 +50,7 @@ impl Plugin for RainDrawPlugin {
         embedded_asset!(app, "backdrop.wgsl");
         embedded_asset!(app, "billboards.wgsl");
         embedded_asset!(app, "drops.wgsl");
-        // Synced components need a renderer, if only to be despawned.
-        if app.get_sub_app(RenderApp).is_some() {
-            app.add_plugins(SyncComponentPlugin::<Rain>::default());
-        }
+        app.add_plugins(SyncComponentPlugin::<Rain>::default());
         let lost_devices = app.world().resource::<LostDevices>().clone();
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;

@@ -196,6 +196,7 @@ fn quad_layout() -> VertexBufferLayout {
             VertexFormat::Uint32,
             VertexFormat::Uint32,
             VertexFormat::Uint32,
+            VertexFormat::Uint32x2,
         ],
     )
 }

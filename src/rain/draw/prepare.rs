@@ -48,7 +48,7 @@ pub(crate) fn queue_rain(
     )>,
     lamps: Query<(&ExtractedPointLight, &RenderLayers)>,
     sun_lights: Query<(&ExtractedDirectionalLight, &RenderLayers)>,
-    mut shelters: ResMut<Shelters>,
+    shelters: Res<Shelters>,
     mut buffers: ResMut<RainBuffers>,
     mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     functions: Res<DrawFunctions<Transparent3d>>,
@@ -79,7 +79,9 @@ pub(crate) fn queue_rain(
         let place = view.world_from_view.translation();
         let plan = Plan::new(rain.method, rain.distance, &eye);
         let mut gpu = GpuRain::new(extracted, &plan, &view.world_from_view, &eye, axis);
-        gpu.shelter(&mut shelters, place);
+        let reach = rain.distance.max(rain.extent);
+        buffers.dry.gather(&shelters, place, &eye, axis, reach);
+        gpu.shelters = buffers.dry.gpu();
         let layers = layers.unwrap_or_default();
         (gpu.suns, gpu.sun_count) = suns(sun_lights.iter(), layers);
         buffers.near.gather(lamps.iter(), layers, place, &eye);
@@ -98,11 +100,16 @@ pub(crate) fn queue_rain(
             || gpu.environment_intensity > 0.0
             || gpu.sun_count > 0
             || rain.brightness <= 0.0;
-        let near = &buffers.near;
+        let (near, dry) = (&buffers.near, &buffers.dry);
         let keep = |content: Content| {
             move |quad: &mut GpuQuad| {
+                let reach = content.lit_reach(quad.size, axis);
+                let Some(shelters) = dry.around(quad.center, reach) else {
+                    return false;
+                };
+                quad.shelters = shelters;
                 if !near.is_empty() {
-                    quad.lamps = near.reaching(quad.center, content.lit_reach(quad.size, axis));
+                    quad.lamps = near.reaching(quad.center, reach);
                 }
                 always || quad.lamps != 0
             }
@@ -155,7 +162,8 @@ pub(crate) fn queue_rain(
         let scene = RainScene {
             suns: gpu.sun_count > 0,
             lamps: !buffers.near.is_empty(),
-            shelters: gpu.shelter_count > 0,
+            // In sight or not: few shaders are compiled as the camera turns.
+            shelters: !shelters.0.is_empty(),
         };
         let target = (view.target_format, msaa.samples());
         let other_target = quads.target.replace(target).is_some_and(|it| it != target);
@@ -172,7 +180,10 @@ pub(crate) fn queue_rain(
                 };
                 // The backdrop is lit by the surroundings alone.
                 let wanted = of(if part == RainPart::Backdrop {
-                    RainScene::NOTHING
+                    RainScene {
+                        shelters: scene.shelters,
+                        ..RainScene::NOTHING
+                    }
                 } else {
                     scene
                 });

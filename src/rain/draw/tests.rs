@@ -17,7 +17,7 @@ use fluid_stage::{headless_app, settle, step};
 
 use super::{
     RainQuads,
-    gpu_types::GpuQuad,
+    gpu_types::{DRY_PLANES, GpuQuad, MAX_SHELTERS},
     lattice::STEEPEST,
     pipeline::{RainKey, RainPart, RainPipeline, RainScene},
     prepare::{prepare_rain_bind_groups, queue_rain},
@@ -76,6 +76,8 @@ fn shaders_know_the_same_numbers() {
     let (types, births) = (include_str!("types.wgsl"), include_str!("births.wgsl"));
     for (shader, line) in [
         (types, format!("const VARIANTS: u32 = {VARIANTS}u;")),
+        (types, format!("const DRY_PLANES: u32 = {DRY_PLANES}u;")),
+        (types, format!("places: array<GpuShelter, {MAX_SHELTERS}>")),
         (types, format!("vec2({WIDTH}.0, {HEIGHT}.0)")),
         (types, format!("const LARGEST: f32 = {LARGEST:.1};")),
         (types, format!("const STEEPEST: f32 = {STEEPEST};")),
@@ -84,7 +86,7 @@ fn shaders_know_the_same_numbers() {
     ] {
         assert!(shader.contains(&line), "{line}");
     }
-    assert_eq!(size_of::<GpuQuad>(), 40);
+    assert_eq!(size_of::<GpuQuad>(), 48);
 }
 
 /// With everything that a frame may have: lamps, suns, shelters.

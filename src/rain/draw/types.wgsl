@@ -33,9 +33,16 @@ struct GpuRainSun {
     illuminance: vec3<f32>,
 }
 
+// Inside and below a box along the fall, it is dry.
 struct GpuShelter {
-    local_from_relative: mat4x4<f32>,
-    half_size: vec3<f32>,
+    // Half-spaces whose intersection that is, with normals to the inside.
+    planes: array<vec4<f32>, DRY_PLANES>,
+}
+
+// The nearest first.
+struct GpuShelters {
+    count: u32,
+    places: array<GpuShelter, 64>,
 }
 
 struct GpuRain {
@@ -56,7 +63,6 @@ struct GpuRain {
     extent: f32,
     brightness: f32,
     sun_count: u32,
-    shelter_count: u32,
     // How far the drops of the textures have fallen: whole metres, and the rest.
     fallen_tiles: i32,
     fallen: f32,
@@ -81,10 +87,11 @@ struct GpuRain {
     levels: array<GpuRainLevel, 4>,
     lights: array<GpuRainLight, 32>,
     suns: array<GpuRainSun, 4>,
-    shelters: array<GpuShelter, 8>,
+    shelters: GpuShelters,
     fog: Fog,
 }
 
+const DRY_PLANES: u32 = 9u;
 const VARIANTS: u32 = 8u;
 // Texels along a metre, across the fall and along it.
 const STREAK_TEXELS: vec2<f32> = vec2(512.0, 512.0);
@@ -109,4 +116,6 @@ struct Voxel {
     // A bit for each light that reaches it.
     @location(6) lamps: u32,
     @location(7) level: u32,
+    // A bit for each shelter that may keep some of it dry.
+    @location(8) shelters: vec2<u32>,
 }

@@ -3,8 +3,8 @@
 use bevy::prelude::*;
 
 use super::{
-    extract::{ExtractedRain, Shelters},
-    gpu_types::{GpuRain, GpuRainLevel, GpuShelter, LEVEL_COUNT, MAX_SHELTERS, SPEED_VECTORS},
+    extract::ExtractedRain,
+    gpu_types::{GpuRain, GpuRainLevel, LEVEL_COUNT, SPEED_VECTORS},
     lattice::{Eye, LEVELS, Level, NEAR, NEAR_REACH, STEEPEST},
 };
 use crate::rain::{
@@ -120,22 +120,6 @@ impl GpuRain {
             .iter()
             .fold(0.0, |most: f32, v| most.max(v.max_element()));
         self.wind.length().hypot(fastest) * self.exposure
-    }
-
-    /// The nearest shelters.
-    pub(crate) fn shelter(&mut self, shelters: &mut Shelters, eye: Vec3) {
-        let away = |transform: &GlobalTransform| transform.translation().distance_squared(eye);
-        shelters
-            .0
-            .sort_unstable_by(|a, b| away(&a.0).total_cmp(&away(&b.0)));
-        for (slot, (transform, half_size)) in self.shelters.iter_mut().zip(&shelters.0) {
-            let local_from_world = transform.affine().inverse();
-            *slot = GpuShelter {
-                local_from_relative: Mat4::from(local_from_world) * Mat4::from_translation(eye),
-                half_size: *half_size,
-            };
-        }
-        self.shelter_count = shelters.0.len().min(MAX_SHELTERS) as u32;
     }
 }
 

@@ -57,13 +57,14 @@ pub use self::{
     writer::{RecordingWriter, WrittenFrames},
 };
 use crate::{
+    needs::need_time,
     schedule::{FluidSystems, Movers},
     settings::check,
 };
 
 /// Plays and writes recordings. Part of [`FluidPlugins`](crate::FluidPlugins); it also works without
-/// the others, as in a program that records and draws nothing. It needs Bevy's `AssetPlugin` and
-/// `Time`.
+/// the others, as in a program that records and draws nothing. Players need Bevy's `AssetPlugin`,
+/// writers do not.
 ///
 /// Players run in [`FluidSystems::Simulate`]; writers run after it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -73,22 +74,43 @@ impl Plugin for RecordingPlugin {
     fn build(&self, app: &mut App) {
         check::<RecordingPlayer>(app);
         check::<RecordingWriter>(app);
-        app.init_asset::<ParticleFrame>()
-            .init_asset::<FluidRecording>()
-            .register_asset_reflect::<ParticleFrame>()
-            .init_asset_loader::<ParticleFrameLoader>()
-            .init_asset_loader::<FluidRecordingLoader>()
-            .register_type::<RecordingPlayer>()
+        add_assets(app);
+        app.register_type::<RecordingPlayer>()
             .register_type::<RecordingSettings>()
             .register_type::<RecordingWriter>()
             .add_systems(
                 PostUpdate,
                 (
-                    playback::play.in_set(Movers::Recordings),
+                    (
+                        playback::play.run_if(resource_exists::<Assets<FluidRecording>>),
+                        playback::miss_assets
+                            .run_if(not(resource_exists::<Assets<FluidRecording>>)),
+                    )
+                        .chain()
+                        .in_set(Movers::Recordings),
                     writer::record
                         .after(FluidSystems::Simulate)
                         .before(FluidSystems::Shape),
                 ),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        need_time(app, "RecordingPlugin");
+        // `AssetPlugin` may have been added since.
+        add_assets(app);
+    }
+}
+
+/// Adds what a player reads, if there is an asset server and it has not been added.
+fn add_assets(app: &mut App) {
+    let world = app.world();
+    let is_added = world.contains_resource::<Assets<FluidRecording>>();
+    if world.contains_resource::<AssetServer>() && !is_added {
+        app.init_asset::<ParticleFrame>()
+            .init_asset::<FluidRecording>()
+            .register_asset_reflect::<ParticleFrame>()
+            .init_asset_loader::<ParticleFrameLoader>()
+            .init_asset_loader::<FluidRecordingLoader>();
     }
 }

@@ -65,6 +65,15 @@ pub(super) fn play(
     }
 }
 
+/// Logs, once, that players have nothing to read from.
+pub(super) fn miss_assets(players: Query<(), Added<RecordingPlayer>>) {
+    if !players.is_empty() {
+        bevy::utils::once!(error!(
+            "a `RecordingPlayer` plays nothing: it needs `AssetPlugin`, part of `DefaultPlugins`"
+        ));
+    }
+}
+
 /// The player's time now, in range.
 fn moved(
     time: f64,

@@ -95,7 +95,9 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::{schedule::Movers, settings::check, source::emitter::ParticleEmitter};
+use crate::{
+    needs::need_time, schedule::Movers, settings::check, source::emitter::ParticleEmitter,
+};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
 /// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
@@ -144,5 +146,9 @@ impl Plugin for SalvaPlugin {
                     .after(AssetEventSystems)
                     .after(mark_3d_meshes_as_changed_if_their_assets_changed),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        need_time(app, "SalvaPlugin");
     }
 }

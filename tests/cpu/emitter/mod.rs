@@ -11,7 +11,7 @@ mod solids;
 
 use std::time::Duration;
 
-use bevy::{prelude::*, shader::Shader, time::TimeUpdateStrategy};
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_fluid::{emitter::EmittedParticles, prelude::*};
 
 use fluid_stage::log;
@@ -42,8 +42,7 @@ fn one(speed: f32, direction: Vec3) -> ParticleEmitter {
 fn app() -> App {
     log::listen();
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
-        .init_asset::<Shader>()
+    app.add_plugins((MinimalPlugins, TransformPlugin))
         .add_plugins(FluidPlugin::default());
     app.finish();
     app.cleanup();

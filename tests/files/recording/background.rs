@@ -7,7 +7,6 @@ use bevy::{
         AssetReader, AssetReaderError, AssetSourceBuilder, PathStream, Reader, memory::Dir,
     },
     prelude::*,
-    shader::Shader,
 };
 use bevy_fluid::{
     particles::ShapedFluid,
@@ -284,7 +283,6 @@ fn a_description_that_is_reloaded_has_its_frames_read_again() {
 fn a_player_without_a_frame_yet_is_no_cause_for_complaint() {
     let (mut app, gates) = gated_with(1, |app| {
         app.add_plugins(TransformPlugin)
-            .init_asset::<Shader>()
             .add_plugins((FluidPlugin::default(), RecordingPlugin));
     });
     let recording = open(&app, slowly("gated://dot_#.xyz"));
@@ -362,4 +360,28 @@ fn an_app_that_ends_takes_its_asset_server_along() {
     assert!(Arc::strong_count(&count) > 1);
     drop(app);
     assert_eq!(Arc::strong_count(&count), 1);
+}
+
+/// The order of plugins does not matter to players.
+#[test]
+fn the_asset_plugin_may_come_after_the_recordings() {
+    let folder = folder("late_assets");
+    write_dots(&folder, 0..2);
+    log::listen();
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        RecordingPlugin,
+        AssetPlugin {
+            file_path: folder.to_str().unwrap().into(),
+            ..default()
+        },
+    ));
+    stop_clock(&mut app);
+    app.finish();
+    app.cleanup();
+    let recording = open(&app, slowly("dot_#.xyz"));
+    let player = play(&mut app, RecordingPlayer::new(recording));
+    seek(&mut app, player, 1.0);
+    assert_eq!(x(&app, player), 1.0);
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use bevy::{prelude::*, shader::Shader};
+use bevy::prelude::*;
 use bevy_fluid::{
     prelude::*,
     recording::{RecordingPlayer, RecordingWriter, WrittenFrames},
@@ -58,7 +58,6 @@ fn assert_recorded(name: &str, source: impl Bundle) {
     let mut recording = App::new();
     recording
         .add_plugins((MinimalPlugins, AssetPlugin::default(), TransformPlugin))
-        .init_asset::<Shader>()
         .add_plugins((FluidPlugin::default(), RecordingPlugin, SalvaPlugin));
     let mut salva = recording.world_mut().resource_mut::<SalvaSettings>();
     salva.mode = SalvaMode::Lockstep;

@@ -1,6 +1,10 @@
 //! Rain in the life of an app: cameras, settings, sizes, and no rain at all.
 
-use bevy::diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore};
+use bevy::{
+    camera::RenderTarget,
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
+    window::WindowRef,
+};
 use bevy_fluid::rain::{BAKE_PROGRESS, BAKE_TIME};
 
 use super::*;
@@ -94,14 +98,7 @@ fn the_same_seed_rains_the_same_and_another_does_not() {
 #[test]
 fn without_a_renderer_rain_comes_and_goes() {
     let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        AssetPlugin::default(),
-        TransformPlugin,
-        ImagePlugin::default(),
-    ))
-    .init_asset::<Shader>()
-    .add_plugins(RainPlugin::default());
+    app.add_plugins((MinimalPlugins, RainPlugin::default()));
     let [first, second] = [(); 2].map(|()| {
         app.world_mut()
             .spawn((Transform::default(), Rain::HEAVY))
@@ -396,4 +393,29 @@ fn a_lost_device_is_survived() {
         assert!(picture(&mut app) == before, "{method:?}, again");
         assert_eq!(render_entities(&app), entities, "{method:?}");
     }
+}
+
+/// Of two windows one has no surface, as if minimised, and is closed: the other's rain falls on.
+#[test]
+fn a_window_that_is_closed_stops_no_rain_elsewhere() {
+    let mut both = show_plain(white_rain(20.0, 4.0));
+    let mut alone = show_plain(white_rain(20.0, 4.0));
+    let window = both.world_mut().spawn(Window::default()).id();
+    let target = RenderTarget::Window(WindowRef::Entity(window));
+    let beside = (camera(&VIEW, white_rain(20.0, 4.0)), target);
+    both.world_mut().spawn(beside);
+    settle(&mut both).unwrap();
+    let fall = |both: &mut App, alone: &mut App| {
+        for app in [&mut *both, &mut *alone] {
+            set_time_step(app, Duration::from_secs_f64(1.0 / 60.0));
+            step(app, 2);
+        }
+        let seen = picture(both);
+        assert!(seen == picture(alone));
+        seen
+    };
+    let minimised = fall(&mut both, &mut alone);
+    both.world_mut().despawn(window);
+    let closed = fall(&mut both, &mut alone);
+    assert!(closed != minimised, "nothing falls");
 }

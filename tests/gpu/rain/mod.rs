@@ -4,6 +4,7 @@ mod depth;
 mod life;
 mod light;
 mod opacity;
+mod shelters;
 
 use core::time::Duration;
 

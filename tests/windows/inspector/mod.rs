@@ -1,6 +1,7 @@
 //! The inspector, driven without a window: egui gets the events, and its tree for screen readers
 //! tells where its widgets are.
 
+mod cameras;
 mod copying;
 mod live;
 

@@ -1,7 +1,5 @@
 //! A job: steps, and the substeps in them.
 
-use std::time::Instant;
-
 use bevy::prelude::*;
 
 use super::{
@@ -11,6 +9,7 @@ use super::{
     guard::GuardedSurface,
     stops::{self, Ways},
 };
+use crate::clock::now;
 
 /// How far a particle may move in a substep, in diameters.
 const CFL: f32 = 0.4;
@@ -22,7 +21,7 @@ const WITHIN: f32 = 0.5;
 impl World {
     /// Does a job and writes the state it ends with into `frame`.
     pub(crate) fn advance(&mut self, job: &Job, frame: &mut Frame) -> Report {
-        let start = Instant::now();
+        let start = now();
         let total = job.steps as f32 * job.step;
         for solid in self.solids.values_mut() {
             solid.head_for_target(total);
