@@ -70,3 +70,32 @@ fn keep_liquid_out_of_occlusion_culling(render_app: &mut SubApp) {
         );
     }
 }
+
+#[cfg(all(test, feature = "published"))]
+mod tests {
+    use bevy::{ecs::schedule::Schedules, render::RenderApp};
+    use fluid_stage::headless_app;
+
+    use super::*;
+    use crate::FluidPlugin;
+
+    /// Bevy's own, without naming it: it is private.
+    #[test]
+    fn the_sky_is_drawn_before_the_liquid() {
+        let app = headless_app(UVec2::splat(16), |app| {
+            app.add_plugins(FluidPlugin::default());
+        })
+        .unwrap();
+        let world = app.sub_app(RenderApp).world();
+        let schedules = world.resource::<Schedules>();
+        let graph = schedules.get(Core3d).unwrap().graph();
+        let node = |set| NodeId::Set(graph.system_sets.get_key(set).unwrap());
+        let between = between_opaque_and_transparent(graph);
+        assert_eq!(between.len(), 1, "{between:?}");
+        let edges = graph.dependency().graph();
+        assert!(edges.contains_edge(node(between[0]), node(FluidPasses::Composite.intern())));
+        let occlusion = node(late_downsample_depth.into_system_set().intern());
+        let late: Vec<_> = graph.hierarchy().graph().neighbors(occlusion).collect();
+        assert_eq!(late.len(), 1, "it was moved, not doubled");
+    }
+}

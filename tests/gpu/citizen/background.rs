@@ -93,6 +93,7 @@ fn rain_shows_on_a_transparent_target() {
 /// Bevy draws its atmosphere between opaque and transparent objects, in no order of its own. In
 /// several apps, since an open order may come out right by chance.
 #[test]
+#[ignore = "lavapipe of Mesa 22 crashes in Bevy's own atmosphere: run it on a GPU"]
 fn an_atmosphere_is_seen_through_water() {
     use bevy::{
         light::{Atmosphere, atmosphere::ScatteringMedium},

@@ -151,6 +151,7 @@ fn rain_is_fogged() {
 
 /// Kilometres away, where the air is blue: a black ball of liquid beside a black box.
 #[test]
+#[ignore = "lavapipe of Mesa 22 crashes in Bevy's own atmosphere: run it on a GPU"]
 fn ink_lies_in_an_atmosphere_as_a_mesh_does() {
     use bevy::{
         light::{Atmosphere, atmosphere::ScatteringMedium},
