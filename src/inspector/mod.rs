@@ -54,6 +54,7 @@ use crate::{
     material::FluidMaterial,
     particles::FluidParticles,
     rain::{Rain, RainShelter, RainStreakSettings},
+    relocation::TeleportSettings,
     schedule,
     settings::ScreenSpaceFluid,
     shape::SurfaceKernel,
@@ -144,7 +145,8 @@ impl Plugin for FluidInspectorPlugin {
             .show::<ParticleEmitter>()
             .show::<ParticleCollider>()
             .show::<RainShelter>()
-            .show::<RainStreakSettings>();
+            .show::<RainStreakSettings>()
+            .show::<TeleportSettings>();
         #[cfg(feature = "recordings")]
         inspector
             .show::<crate::source::recording::RecordingPlayer>()

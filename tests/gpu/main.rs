@@ -12,5 +12,6 @@ mod medium;
 mod rain;
 mod random_cameras;
 mod refraction;
+mod relocation;
 mod smoothing;
 mod textures;

@@ -40,6 +40,7 @@ impl Emission {
     /// oldest first, those of a burst last. It is to be called in every frame, to follow the
     /// emitter's path; nothing is born while no time passes.
     ///
+    /// They are spread along the way there, unless that is a jump: longer than at `fastest` (m/s).
     /// Nothing is born where the transform is not finite or has no rotation, as with a scale of 0.
     /// `emitter` comes from [`ParticleEmitter::take`]. If more would be born than its capacity,
     /// only the last ones are.
@@ -48,12 +49,15 @@ impl Emission {
         emitter: &ParticleEmitter,
         to: &GlobalTransform,
         seconds: f64,
+        fastest: f32,
         mut birth: impl FnMut(Birth),
     ) {
         let from = core::mem::replace(&mut self.last, Pose::new(to));
         let Some(to) = self.last.filter(|_| seconds > 0.0) else {
             return;
         };
+        let farthest = fastest * seconds as f32;
+        let from = from.filter(|from| !from.jumps_to(&to, farthest));
         let from = from.unwrap_or(to);
         let nozzle = Nozzle::new(emitter);
         let rate = if emitter.enabled {
@@ -85,6 +89,18 @@ impl Emission {
         self.born = self.born.wrapping_add(all);
         self.owed = total.fract();
     }
+
+    /// The world is shifted.
+    pub(super) fn shift(&mut self, by: Vec3) {
+        if let Some(last) = &mut self.last {
+            last.translation += by;
+        }
+    }
+
+    /// The emitter has been put elsewhere: nothing is spread along the way there.
+    pub(super) fn forget_place(&mut self) {
+        self.last = None;
+    }
 }
 
 /// An emitter's place.
@@ -104,6 +120,13 @@ impl Pose {
             rotation,
             translation,
         })
+    }
+
+    /// Whether there is no way from here to there: it is longer than `farthest` (m), or one of the
+    /// two is mirrored.
+    fn jumps_to(&self, to: &Self, farthest: f32) -> bool {
+        let is_mirrored = |pose: &Self| pose.scale.x < 0.0;
+        self.translation.distance(to.translation) > farthest || is_mirrored(self) != is_mirrored(to)
     }
 
     /// A part of the way from here to there.

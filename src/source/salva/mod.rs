@@ -75,6 +75,7 @@ mod error;
 mod fluid;
 mod gather;
 mod pace;
+mod relocate;
 mod runner;
 mod settings;
 mod shape;
@@ -95,7 +96,12 @@ pub use self::{
     solids::{SalvaBody, SalvaBoundary, SalvaLoad, SalvaShape},
 };
 
-use crate::{schedule::Movers, settings::check, source::emitter::ParticleEmitter};
+use crate::{
+    relocation,
+    schedule::Movers,
+    settings::check,
+    source::{emitter::ParticleEmitter, particles},
+};
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
 /// Part of [`FluidPlugins`](crate::FluidPlugins). [`FluidPlugin`](crate::FluidPlugin) draws the
@@ -113,6 +119,9 @@ impl Plugin for SalvaPlugin {
         check::<SalvaBody>(app);
         check::<SalvaSettings>(app);
         check::<ParticleEmitter>(app);
+        particles::carried(app);
+        relocation::on_shift(app, relocate::shift);
+        relocation::on_teleport(app, relocate::teleport);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()
