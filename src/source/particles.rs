@@ -17,7 +17,7 @@ use crate::{
 ///
 /// A fluid is shaped again only when this component, or the [`SurfaceKernel`] on its entity,
 /// changes, and a camera sees it; an unchanged or unseen fluid costs nothing. Unseen is what is
-/// hidden, on no render layer of an active camera with [`ScreenSpaceFluid`](crate::ScreenSpaceFluid),
+/// hidden, on no render layer of an active camera with [`ScreenSpaceFluid`](crate::settings::ScreenSpaceFluid),
 /// or out of their views.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Clone)]

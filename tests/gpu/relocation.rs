@@ -33,6 +33,13 @@ fn shift(app: &mut App, way: Vec3) {
     world.write_message(WorldShift(way));
 }
 
+/// Puts the only camera's picture over gray: both ink and rain show.
+fn over_gray(app: &mut App) {
+    let camera = only::<Camera3d>(app);
+    let mut camera = app.world_mut().get_mut::<Camera>(camera).unwrap();
+    camera.clear_color = ClearColorConfig::Custom(Color::srgb(0.5, 0.5, 0.5));
+}
+
 /// Pixels that differ by more than `slack` in any channel.
 fn differing(a: &RgbaImage, b: &RgbaImage, slack: u8) -> usize {
     let pairs = a.pixels().zip(b.pixels());
@@ -81,7 +88,7 @@ fn a_fountain_comes_along_when_the_world_is_shifted() {
     shift(&mut app, Vec3::X * -1000.0);
     let dark = |picture: &RgbaImage| picture.pixels().filter(|it| it.0[0] < 128).count();
     let ink = dark(&before);
-    assert!(ink > 500, "{ink}");
+    assert!(ink > 200, "{ink}");
     for _ in 0..2 {
         step(&mut app, 1);
         let after = dark(&capture(&mut app).unwrap());
@@ -131,6 +138,7 @@ fn h63_a_shifted_world_looks_the_same() {
             fountain(world);
         })
         .unwrap();
+        over_gray(&mut app);
         settle(&mut app).unwrap();
         set_time_step(&mut app, Duration::from_secs_f64(1.0 / 64.0));
         step(&mut app, 60);
@@ -158,9 +166,11 @@ fn h63_a_shifted_world_looks_the_same() {
         let differ = differing(&expected, &picture, 12);
         // Drops on the move fill hundreds of pixels anew in each frame.
         let moved = differing(&expected, &first, 12);
-        println!("frame {frame}: {differ} pixels differ, {moved} have changed since");
         assert!(moved > 1000, "{moved}");
-        assert!(differ < 60, "frame {frame}: {differ} pixels differ");
+        assert!(
+            15 * differ < moved,
+            "frame {frame}: {differ} pixels differ, {moved} have moved"
+        );
     }
 }
 
@@ -223,6 +233,7 @@ fn generation(app: &App, fluid: Entity) -> u64 {
 fn what_no_camera_sees_is_not_shaped() {
     let build = || {
         let mut app = show(&VIEW, ScreenSpaceFluid::default(), fountain);
+        over_gray(&mut app);
         set_time_step(&mut app, Duration::from_secs_f64(1.0 / 64.0));
         step(&mut app, 40);
         app
@@ -276,6 +287,8 @@ fn what_no_camera_sees_is_not_shaped() {
         step(&mut seen, 21);
         let (picture, expected) = (capture(&mut app).unwrap(), capture(&mut seen).unwrap());
         assert!(picture == expected, "{name}");
+        let ink = picture.pixels().filter(|it| it.0[0] < 100).count();
+        assert!(ink > 200, "{ink} pixels of ink");
     }
 }
 
@@ -283,6 +296,7 @@ fn what_no_camera_sees_is_not_shaped() {
 #[test]
 fn what_leaves_the_view_leaves_no_ghost() {
     let mut app = show(&VIEW, ScreenSpaceFluid::default(), fountain);
+    over_gray(&mut app);
     let plain = {
         let fluid = only::<FluidParticles>(&mut app);
         app.world_mut().entity_mut(fluid).insert(Visibility::Hidden);
@@ -296,7 +310,7 @@ fn what_leaves_the_view_leaves_no_ghost() {
     let fluid = only::<FluidParticles>(&mut app);
     set_time_step(&mut app, Duration::from_secs_f64(1.0 / 64.0));
     step(&mut app, 40);
-    assert!(differing(&capture(&mut app).unwrap(), &plain, 5) > 500);
+    assert!(differing(&capture(&mut app).unwrap(), &plain, 5) > 300);
     let way = Vec3::X * 50.0;
     let mut place = app.world_mut().get_mut::<Transform>(fluid).unwrap();
     place.translation += way;
@@ -312,7 +326,7 @@ fn what_leaves_the_view_leaves_no_ghost() {
     let mut eye = app.world_mut().get_mut::<Transform>(camera).unwrap();
     eye.translation += way;
     step(&mut app, 1);
-    assert!(differing(&capture(&mut app).unwrap(), &plain, 5) > 500);
+    assert!(differing(&capture(&mut app).unwrap(), &plain, 5) > 300);
 }
 
 /// A fluid in a hierarchy whose scale changes in each frame, passes zero and mirrors: each frame is
@@ -336,30 +350,25 @@ fn h72_a_scale_may_pass_zero_and_mirror() {
             world.entity_mut(arm).add_child(fluid);
         }
     };
-    let over_white = |app: &mut App| {
-        let camera = only::<Camera3d>(app);
-        let mut camera = app.world_mut().get_mut::<Camera>(camera).unwrap();
-        camera.clear_color = ClearColorConfig::Custom(Color::WHITE);
-    };
     let settings = ScreenSpaceFluid::default();
     let mut app = show(&VIEW, settings, liquid(Vec3::ONE));
-    over_white(&mut app);
+    over_gray(&mut app);
     let arm = only::<Children>(&mut app);
-    let scales = [1.0_f32, 0.5, 0.1, 0.0, -0.1, -0.7, -1.0, 0.0, 0.8];
+    let scales = [1.0_f32, 0.5, 0.25, 0.0, -0.25, -0.7, -1.0, 0.0, 0.8];
     for axes in [Vec3::ONE, Vec3::X] {
         for scale in scales {
             let scale = Vec3::ONE + (scale - 1.0) * axes;
             app.world_mut().get_mut::<Transform>(arm).unwrap().scale = scale;
             step(&mut app, 1);
             let picture = capture(&mut app).unwrap();
-            let dark = picture.pixels().filter(|it| it.0[0] < 128).count();
+            let dark = picture.pixels().filter(|it| it.0[0] < 100).count();
             if scale.element_product() == 0.0 {
                 assert_eq!(dark, 0, "nothing at {scale}");
                 continue;
             }
             assert!(dark > 0, "something at {scale}");
             let mut fresh = show(&VIEW, settings, liquid(scale));
-            over_white(&mut fresh);
+            over_gray(&mut fresh);
             step(&mut fresh, 1);
             assert!(picture == capture(&mut fresh).unwrap(), "{scale}");
         }

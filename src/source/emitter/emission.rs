@@ -1,6 +1,6 @@
 //! The particles that an emitter emits in a step, whatever moves them afterwards.
 
-use core::f32::consts::TAU;
+use core::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
 
@@ -106,27 +106,33 @@ impl Emission {
 /// An emitter's place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
-    scale: Vec3,
+    /// What is left of the transform without the rotation: scale, and the shear of a hierarchy.
+    stretch: Mat3,
     rotation: Quat,
     translation: Vec3,
 }
 
 impl Pose {
     fn new(transform: &GlobalTransform) -> Option<Self> {
-        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        let is_sound = scale.is_finite() && rotation.is_finite() && translation.is_finite();
+        let (_, rotation, translation) = transform.to_scale_rotation_translation();
+        let rotation = rotation.normalize();
+        let matrix = Mat3::from(transform.affine().matrix3);
+        let stretch = Mat3::from_quat(rotation.inverse()) * matrix;
+        let is_sound = stretch.is_finite() && rotation.is_finite() && translation.is_finite();
         is_sound.then_some(Self {
-            scale,
+            stretch,
             rotation,
             translation,
         })
     }
 
     /// Whether there is no way from here to there: it is longer than `farthest` (m), or one of the
-    /// two is mirrored.
+    /// two is mirrored or turned over, as by a scale that passes zero.
     fn jumps_to(&self, to: &Self, farthest: f32) -> bool {
-        let is_mirrored = |pose: &Self| pose.scale.x < 0.0;
-        self.translation.distance(to.translation) > farthest || is_mirrored(self) != is_mirrored(to)
+        let is_mirrored = |pose: &Self| pose.stretch.determinant() < 0.0;
+        self.translation.distance(to.translation) > farthest
+            || is_mirrored(self) != is_mirrored(to)
+            || self.rotation.angle_between(to.rotation) > 0.75 * PI
     }
 
     /// A part of the way from here to there.
@@ -135,14 +141,14 @@ impl Pose {
             return *to;
         }
         Self {
-            scale: self.scale.lerp(to.scale, part),
+            stretch: self.stretch + (to.stretch - self.stretch) * part,
             rotation: self.rotation.slerp(to.rotation, part),
             translation: self.translation.lerp(to.translation, part),
         }
     }
 
     fn vector(&self, vector: Vec3) -> Vec3 {
-        self.rotation * (self.scale * vector)
+        self.rotation * (self.stretch * vector)
     }
 }
 

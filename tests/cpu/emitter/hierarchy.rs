@@ -4,10 +4,10 @@ use super::*;
 
 const FRAME: f32 = 1.0 / 64.0;
 
-/// A scale through zero, there and back, along all axes or along one.
+/// A scale through zero, with a frame there and without one on the way back, along these axes.
 fn scales(axes: Vec3) -> impl Iterator<Item = Vec3> {
     let there = (-8..=8).map(|i| i as f32 / 8.0);
-    let back = (-8..=8).rev().map(|i| i as f32 / 8.0);
+    let back = (-8..8).rev().map(|i| (i as f32 + 0.5) / 8.0);
     there
         .chain(back)
         .map(move |scale| Vec3::ONE + (scale - 1.0) * axes)
