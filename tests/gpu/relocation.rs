@@ -177,7 +177,7 @@ fn h63_a_shifted_world_looks_the_same() {
 /// Without fluids nothing is rounded: rain is the same bit for bit, however far and often the world
 /// is shifted.
 #[test]
-fn rain_is_the_same_after_many_shifts() {
+fn h63_rain_is_the_same_after_many_shifts() {
     let build = || {
         let mut app = headless_app(VIEW.size, |app| {
             app.add_plugins(RainPlugin {
@@ -294,7 +294,7 @@ fn what_no_camera_sees_is_not_shaped() {
 
 /// What flew out of view is not drawn where it was seen last, and a jump leaves nothing there.
 #[test]
-fn what_leaves_the_view_leaves_no_ghost() {
+fn h64_what_leaves_the_view_leaves_no_ghost() {
     let mut app = show(&VIEW, ScreenSpaceFluid::default(), fountain);
     over_gray(&mut app);
     let plain = {

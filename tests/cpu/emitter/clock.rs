@@ -109,7 +109,7 @@ fn a_step_of_a_nanosecond_is_one() {
 
 /// A pause in which things are dragged about, slow motion and fast motion: as at any other time.
 #[test]
-fn time_may_stand_still_crawl_or_race() {
+fn h65_time_may_stand_still_crawl_or_race() {
     let (mut app, entity) = scene();
     let mut floors = app.world_mut().query::<(Entity, &ParticleCollider)>();
     let colliders: Vec<_> = floors.iter(app.world()).map(|(it, _)| it).collect();

@@ -14,7 +14,7 @@ fn scales(axes: Vec3) -> impl Iterator<Item = Vec3> {
 }
 
 #[test]
-fn particles_come_out_where_the_nozzle_points() {
+fn h72_particles_come_out_where_the_nozzle_points() {
     for axes in [Vec3::ONE, Vec3::X, Vec3::Y, vec3(1.0, 0.0, 1.0)] {
         let (mut app, nozzle) = emitting(ParticleEmitter {
             rate: 640.0,
@@ -64,7 +64,7 @@ fn particles_come_out_where_the_nozzle_points() {
 }
 
 #[test]
-fn a_solid_that_vanishes_and_mirrors_throws_nothing() {
+fn h72_a_solid_that_vanishes_and_mirrors_throws_nothing() {
     for axes in [Vec3::ONE, Vec3::X, Vec3::Y] {
         let (mut app, entity) = emitting(ParticleEmitter {
             nozzle_radius: 0.4,

@@ -232,7 +232,7 @@ fn hanging() -> (App, Entity, Entity) {
 }
 
 #[test]
-fn a_jump_leaves_no_trail() {
+fn h64_a_jump_leaves_no_trail() {
     // 3200 m/s: nothing needs to be told.
     let (mut app, nozzle, arm) = hanging();
     place(&mut app, arm).translation.x += 50.0;

@@ -49,7 +49,7 @@ fn assert_held(app: &App, tank: Entity, water: Entity, count: usize) {
 }
 
 #[test]
-fn a_shift_takes_liquid_tank_and_body_along() {
+fn h63_a_shift_takes_liquid_tank_and_body_along() {
     let (mut app, tank, water, body) = bath();
     let count = particles(&app, water).len();
     let way = vec3(-2000.0, 512.0, 3000.0);
@@ -148,7 +148,7 @@ fn a_pause_may_be_shifted() {
 }
 
 #[test]
-fn a_tank_that_jumps_takes_its_water_along_if_told() {
+fn h64_a_tank_that_jumps_takes_its_water_along_if_told() {
     let way = vec3(50.0, 2.0, 0.0);
     for told in [true, false] {
         let (mut app, tank, water, body) = bath();
@@ -210,7 +210,7 @@ fn a_wall_that_is_put_elsewhere_sweeps_nothing() {
 
 /// A lid whose scale passes zero holds nothing there.
 #[test]
-fn a_wall_without_an_extent_is_not_there() {
+fn h72_a_wall_without_an_extent_is_not_there() {
     let mut app = app();
     let floor = SalvaBoundary::new(Cuboid::new(1.0, 0.2, 1.0));
     let floor = app
@@ -232,4 +232,41 @@ fn a_wall_without_an_extent_is_not_there() {
     let other = spawn_water(&mut app, vec![vec3(0.0, 0.1, 0.3)]);
     run(&mut app, 0.5);
     assert!(particles(&app, other)[0].y > -0.2);
+}
+
+/// A pause, slow motion and fast motion: nothing is stuck, torn or lost, and a frame does no more
+/// steps than it may.
+#[test]
+fn h65_time_may_stand_still_crawl_or_race() {
+    for mode in [SalvaMode::Lockstep, SalvaMode::Background] {
+        let (mut app, tank, water, _) = bath();
+        let count = particles(&app, water).len();
+        app.world_mut().resource_mut::<SalvaSettings>().mode = mode;
+        let most = {
+            let settings = app.world().resource::<SalvaSettings>();
+            f64::from(settings.max_steps) * f64::from(settings.step)
+        };
+        let mut play = |speed: f32, frames: u32| {
+            let mut time = app.world_mut().resource_mut::<Time<Virtual>>();
+            time.set_relative_speed(speed);
+            let start = status(&app).simulated;
+            for _ in 0..frames {
+                let before = status(&app).simulated;
+                app.update();
+                assert_held(&app, tank, water, count);
+                let steps = status(&app).simulated - before;
+                assert!(mode == SalvaMode::Lockstep || steps < 1.01 * most);
+                sleep(Duration::from_millis(2));
+            }
+            (status(&app).simulated - start) as f32
+        };
+        let slow = play(0.01, 40);
+        assert!(slow < 4.0 * STEP, "{slow} s in slow motion");
+        // What was on its way when time stopped may still come in.
+        play(0.0, 10);
+        assert_eq!(play(0.0, 10), 0.0);
+        let fast = play(10.0, 20);
+        assert!(fast > 10.0 * STEP, "{fast} s in fast motion");
+        assert!(play(1.0, 60) > 20.0 * STEP);
+    }
 }

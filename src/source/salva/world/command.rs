@@ -258,3 +258,36 @@ impl World {
         self.rigid_world.remove_body(solid.body);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// While time is paused, no number of shifts piles up, whatever is told between them.
+    #[test]
+    fn shifts_join() {
+        let limits = |x: f32| {
+            let bounds = Some((Mat4::from_translation(Vec3::X * x), [Vec3::ZERO, Vec3::ONE]));
+            Command::Limit(
+                7,
+                Limits {
+                    bounds,
+                    ..default()
+                },
+            )
+        };
+        let mut waiting = Vec::new();
+        for i in 0..10 {
+            Command::Shift(Vec3::X).join(&mut waiting);
+            limits(i as f32).join(&mut waiting);
+        }
+        let [Command::Shift(way), Command::Limit(..)] = waiting[..] else {
+            panic!("{} commands", waiting.len());
+        };
+        assert_eq!(way, Vec3::X * 10.0);
+        // What is added between two shifts comes along with the second alone.
+        Command::Add(7, Newborn::default()).join(&mut waiting);
+        Command::Shift(Vec3::Y).join(&mut waiting);
+        assert_eq!(waiting.len(), 4);
+    }
+}
