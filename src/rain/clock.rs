@@ -13,8 +13,8 @@ const PERIOD: f64 = 256.0;
 
 /// The state of a camera's rain, advanced by `Time`.
 ///
-/// Neither a jump of the camera nor a change of settings makes drops jump at the camera's height, and
-/// a [`WorldShift`](crate::relocation::WorldShift) takes all drops along.
+/// Neither a jump of the camera nor a change of settings makes drops jump at the camera's height,
+/// and a [`WorldShift`](crate::relocation::WorldShift) takes all drops along.
 /// When the wind changes, so does the lean of columns: the farther above or below the camera, the
 /// farther they swing.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]

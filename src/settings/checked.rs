@@ -34,7 +34,7 @@ impl<C: Settings> Checked<C> {
     }
 }
 
-/// Keeps the [`Checked`] copy of `C`, in [`FluidSystems::Check`](crate::FluidSystems::Check). `C` must require it.
+/// Keeps the [`Checked`] copy of `C`, in `FluidSystems::Check`. `C` must require it.
 pub(crate) fn check<C: Settings + Component>(app: &mut App) {
     if !app.is_plugin_added::<CheckPlugin<C>>() {
         app.add_plugins(CheckPlugin::<C>(PhantomData));

@@ -3,9 +3,25 @@
 use bevy::prelude::*;
 
 use super::{colliders::ColliderPath, emission::Emission};
-use crate::relocation::{Relocated, Teleports};
+use crate::relocation::{self, Relocated, Teleports};
 
-pub(super) fn shift(
+struct RelocatePlugin;
+
+impl Plugin for RelocatePlugin {
+    fn build(&self, app: &mut App) {
+        relocation::on_shift(app, shift);
+        relocation::on_teleport(app, teleport);
+    }
+}
+
+/// Adds the systems of this file. Each plugin that emits does so, as it may be the only one.
+pub(crate) fn relocated(app: &mut App) {
+    if !app.is_plugin_added::<RelocatePlugin>() {
+        app.add_plugins(RelocatePlugin);
+    }
+}
+
+fn shift(
     mut emitters: Query<&mut Emission>,
     mut colliders: Query<&mut ColliderPath>,
     relocated: Res<Relocated>,
@@ -19,7 +35,7 @@ pub(super) fn shift(
 }
 
 /// They have not come from anywhere.
-pub(super) fn teleport(
+fn teleport(
     mut emitters: Query<(Entity, &mut Emission)>,
     mut colliders: Query<(Entity, &mut ColliderPath)>,
     teleports: Teleports,

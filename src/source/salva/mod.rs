@@ -100,7 +100,10 @@ use crate::{
     relocation,
     schedule::Movers,
     settings::check,
-    source::{emitter::ParticleEmitter, particles},
+    source::{
+        emitter::{self, ParticleEmitter},
+        particles,
+    },
 };
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
@@ -120,6 +123,7 @@ impl Plugin for SalvaPlugin {
         check::<SalvaSettings>(app);
         check::<ParticleEmitter>(app);
         particles::carried(app);
+        emitter::relocated(app);
         relocation::on_shift(app, relocate::shift);
         relocation::on_teleport(app, relocate::teleport);
         app.register_type::<SalvaFluid>()

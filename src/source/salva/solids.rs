@@ -38,9 +38,10 @@ impl<T: Into<SolidShape>> From<T> for SalvaShape {
 /// A solid that liquid and [`SalvaBody`]s collide with: at rest, or moved by its transform.
 ///
 /// Between two frames it moves evenly, and its velocity acts on the liquid: a plunger makes waves,
-/// a tipped tank pours. It has no velocity when it is inserted again or [teleported](crate::relocation),
-/// and when it moves faster than [`TeleportSettings::speed`](crate::relocation::TeleportSettings::speed)
-/// or [`SalvaSettings::max_speed`](super::SalvaSettings::max_speed). No particle passes its surface,
+/// a tipped tank pours. It jumps, without a velocity, when it is inserted again or
+/// [teleported](crate::relocation), and when it moves faster than
+/// [`TeleportSettings::speed`](crate::relocation::TeleportSettings::speed) or
+/// [`SalvaSettings::max_speed`](super::SalvaSettings::max_speed). No particle passes its surface,
 /// from either side, however fast.
 ///
 /// It always follows its transform, even while the liquid moves in slow motion: at a fifth of the
