@@ -71,7 +71,7 @@
 //! | a `SalvaFluid` | its liquid stays | its liquid is moved along: for a tank, as its child or told beside it |
 //! | a camera with `Rain` | nothing is needed: drops are fixed in the world | the same |
 //!
-//! A `SalvaBody` jumps, to rest, whenever its transform is written. A move faster than
+//! A `SalvaBody` jumps, to rest, whenever its transform is written, but for a shift of the world. A move faster than
 //! [`TeleportSettings::speed`] is a jump without a message, alone.
 //!
 //! # When

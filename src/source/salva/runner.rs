@@ -53,6 +53,8 @@ pub(crate) struct Simulation {
     /// Solids that move faster have jumped, m/s.
     fastest: f32,
     planned: f64,
+    /// How much has been simulated in lockstep beyond the app's time, s.
+    ahead: f64,
     pub(crate) shown: f64,
     pub(crate) fluids: EntityHashMap<FluidEntry>,
     pub(crate) solids: EntityHashMap<SolidEntry>,
@@ -239,19 +241,28 @@ pub(crate) fn advance(
 }
 
 impl Simulation {
-    /// All of the update's time, in steps of equal length.
+    /// All of the update's time, in steps of equal length. Pressure that had to act within far
+    /// shorter ones would throw particles apart: in slow motion a whole step is done ahead, and
+    /// shown bit by bit.
     fn lockstep(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
-        if delta > 0.0 {
-            let steps = (delta / f64::from(settings.step) - 1e-3).ceil().max(1.0);
-            let step = (delta / steps) as f32;
+        let whole = f64::from(settings.step);
+        let due = delta - self.ahead;
+        if delta > 0.0 && due > 1e-6 * whole {
+            let time = if due < 0.499 * whole { whole } else { due };
+            let steps = (time / whole - 1e-3).ceil().max(1.0);
             self.pace = Pace::default();
-            let job = self.job(settings, steps as u32, step, None);
+            let job = self.job(settings, steps as u32, (time / steps) as f32, None);
             self.begin(job, settings.mode, status);
+            self.ahead = time - due;
+        } else {
+            self.ahead = (-due).max(0.0);
         }
-        self.shown = self.to.time;
+        let shown = self.to.time - self.ahead;
+        self.shown = shown.clamp(self.from.time, self.to.time);
     }
 
     fn background(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
+        self.ahead = 0.0;
         let budget = settings.budget.as_secs_f64();
         self.pace.tick(delta, budget, self.task.is_some());
         if self.task.is_none() && delta > 0.0 {

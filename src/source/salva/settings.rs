@@ -81,7 +81,8 @@ pub enum SalvaMode {
     #[default]
     Background,
     /// The app waits in every update until the liquid has advanced by exactly the update's time, on
-    /// one thread. Deterministic: equal updates give equal bits, on one machine. For tests and
+    /// one thread. Updates shorter than half a [`step`](SalvaSettings::step), as in slow motion, show
+    /// parts of whole steps. Deterministic: equal updates give equal bits, on one machine. For tests and
     /// recordings.
     Lockstep,
 }

@@ -102,7 +102,9 @@ impl Default for SalvaBoundary {
 /// [`density`](Self::density) is less than the fluid's.
 ///
 /// Its `Transform` is written in every update, in world space: it must have no parent. A transform
-/// written by other code teleports it, at rest. It should be several particles across.
+/// written by other code teleports it, at rest, but for a
+/// [`WorldShift`](crate::relocation::WorldShift), through which it goes on. It should be several
+/// particles across.
 ///
 /// Other changes leave its motion unchanged; inserting it again restarts it. On an entity that also
 /// has a [`SalvaBoundary`], the body takes precedence. Values out of range are logged once and

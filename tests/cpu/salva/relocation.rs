@@ -253,6 +253,9 @@ fn h65_time_may_stand_still_crawl_or_race() {
             for _ in 0..frames {
                 let before = status(&app).simulated;
                 app.update();
+                let speeds = &app.world().get::<FluidParticles>(water).unwrap().velocities;
+                let fastest = speeds.iter().map(|v| v.length()).fold(0.0, f32::max);
+                assert!(fastest < 1.0, "{fastest} m/s at {speed} times the speed");
                 assert_held(&app, tank, water, count);
                 let steps = status(&app).simulated - before;
                 assert!(mode == SalvaMode::Lockstep || steps < 1.01 * most);
