@@ -10,6 +10,7 @@ use crate::{
     emitter::EmitterBounds,
     prelude::*,
     rain::{Exposure, RainShelter, RainStreakSettings},
+    relocation::TeleportSettings,
     settings::{
         Bilateral, CurvatureFlow, NarrowRange, NormalAverage, PlaneFit, Search, Smoothing,
         for_each_number,
@@ -173,6 +174,7 @@ fn emitters_and_colliders() {
     for shape in SOLIDS {
         check(ParticleCollider::from(shape));
     }
+    check(TeleportSettings::default());
 }
 
 #[test]

@@ -69,6 +69,11 @@
 //! lit by the scene's lights and blocked by [`RainShelter`](rain::RainShelter)s. It does not need
 //! [`FluidPlugin`]; see [`rain`].
 //!
+//! # Floating origins and teleports
+//!
+//! [`WorldShift`] takes along all that is kept in the world's space when a program moves everything;
+//! [`Teleport`] tells that an entity was put elsewhere and has not moved there: see [`relocation`].
+//!
 //! # Inspector and diagnostics
 //!
 //! With the feature `inspector`, `FluidInspectorPlugin` adds a window with every setting, the time
@@ -113,6 +118,7 @@ mod needs;
 mod plugins;
 pub mod rain;
 mod random;
+pub mod relocation;
 pub mod render;
 mod schedule;
 pub mod settings;
@@ -166,6 +172,7 @@ pub mod prelude {
         material::{FluidMaterial, Medium, Thickness},
         particles::{FluidParticles, ParticleSpace},
         rain::{Rain, RainPlugin},
+        relocation::{Teleport, WorldShift},
         settings::{ScreenSpaceFluid, Settings},
         shape::SurfaceKernel,
     };

@@ -61,6 +61,7 @@ use crate::{
     needs::log_late_renderer,
     particles::FluidParticles,
     rain::{Rain, RainShelter, RainStreakSettings},
+    relocation::TeleportSettings,
     schedule,
     settings::ScreenSpaceFluid,
     shape::SurfaceKernel,
@@ -142,7 +143,8 @@ impl Plugin for FluidInspectorPlugin {
             .show::<ParticleEmitter>()
             .show::<ParticleCollider>()
             .show::<RainShelter>()
-            .show::<RainStreakSettings>();
+            .show::<RainStreakSettings>()
+            .show::<TeleportSettings>();
         #[cfg(feature = "recordings")]
         inspector
             .show::<crate::source::recording::RecordingPlayer>()

@@ -1,7 +1,7 @@
 //! How far drops have fallen.
 
 use bevy::{
-    math::{DVec2, Vec2},
+    math::{DVec2, DVec3, Vec2},
     prelude::*,
 };
 
@@ -13,7 +13,8 @@ const PERIOD: f64 = 256.0;
 
 /// The state of a camera's rain, advanced by `Time`.
 ///
-/// Neither a jump of the camera nor a change of settings makes drops jump at the camera's height.
+/// Neither a jump of the camera nor a change of settings makes drops jump at the camera's height,
+/// and a [`WorldShift`](crate::relocation::WorldShift) takes all drops along.
 /// When the wind changes, so does the lean of columns: the farther above or below the camera, the
 /// farther they swing.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
@@ -30,12 +31,14 @@ pub struct RainClock {
     pub(crate) anchor: DVec2,
     /// Unit: m.
     pub(crate) height: f64,
+    /// Where the lattice's origin is in the world, which may have been shifted. Unit: m.
+    pub(crate) origin: DVec3,
     /// Whether `lean` has been set.
     pub(crate) has_begun: bool,
 }
 
 impl RainClock {
-    /// `speed` is the drops' mean speed.
+    /// `speed` is the drops' mean speed; the camera's height is in the lattice.
     pub(crate) fn advance(&mut self, seconds: f64, wind: Vec2, speed: f64, camera_height: f64) {
         self.fallen += speed * seconds;
         self.seconds += seconds;

@@ -62,6 +62,7 @@ pub use self::{
 };
 use crate::{
     needs::log_late_renderer,
+    relocation::{self, Relocated},
     schedule::FluidSystems,
     settings::{Checked, check},
 };
@@ -80,6 +81,7 @@ impl Plugin for RainPlugin {
         check::<Rain>(app);
         check::<RainShelter>(app);
         check::<RainStreakSettings>(app);
+        relocation::plugin(app);
         app.register_type::<Rain>()
             .register_type::<RainShelter>()
             .register_type::<RainStreakSettings>()
@@ -122,13 +124,15 @@ struct RainSystems;
 fn advance_clocks(
     mut cameras: Query<(&Checked<Rain>, &GlobalTransform, &mut RainClock)>,
     streaks: Res<BakedStreaks>,
+    relocated: Res<Relocated>,
     time: Res<Time>,
 ) {
     let Some(ready) = streaks.ready() else {
         return;
     };
     for (rain, transform, mut clock) in &mut cameras {
-        let (wind, height) = (rain.wind, transform.translation().y);
-        clock.advance(time.delta_secs_f64(), wind, ready.speed, height.into());
+        clock.origin = relocated.total;
+        let height = f64::from(transform.translation().y) - clock.origin.y;
+        clock.advance(time.delta_secs_f64(), rain.wind, ready.speed, height);
     }
 }

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use bevy::{ecs::resource::IsResource, prelude::*};
 
 use super::Settings;
-use crate::schedule::{self, FluidSystems};
+use crate::schedule::{self, Relocations};
 
 /// A valid copy of the settings `C` on the same entity: what draws and simulates reads this.
 #[derive(Component, Clone, Debug, Default, Deref)]
@@ -34,7 +34,7 @@ impl<C: Settings> Checked<C> {
     }
 }
 
-/// Keeps the [`Checked`] copy of `C`, before [`FluidSystems::Emit`]. `C` must require it.
+/// Keeps the [`Checked`] copy of `C`, in `FluidSystems::Check`. `C` must require it.
 pub(crate) fn check<C: Settings + Component>(app: &mut App) {
     if !app.is_plugin_added::<CheckPlugin<C>>() {
         app.add_plugins(CheckPlugin::<C>(PhantomData));
@@ -48,7 +48,7 @@ impl<C: Settings + Component> Plugin for CheckPlugin<C> {
         schedule::order(app);
         app.add_observer(check_inserted::<C>)
             .add_observer(forget_removed::<C>)
-            .add_systems(PostUpdate, check_changed::<C>.in_set(FluidSystems::Check));
+            .add_systems(PostUpdate, check_changed::<C>.in_set(Relocations::Checked));
     }
 }
 

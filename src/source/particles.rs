@@ -4,6 +4,7 @@ use bevy::prelude::*;
 
 use crate::{
     material::FluidMaterial,
+    relocation::{self, Relocated, Teleports},
     schedule::FluidSystems,
     settings::Checked,
     shape::{FluidSplats, RADIUS, ShapeTimes, ShapeWorkspace, SurfaceKernel},
@@ -15,7 +16,9 @@ use crate::{
 /// the positions is ignored, which is logged once.
 ///
 /// A fluid is shaped again only when this component, or the [`SurfaceKernel`] on its entity,
-/// changes; an unchanged fluid costs nothing.
+/// changes, and a camera sees it; an unchanged or unseen fluid costs nothing. Unseen is what is
+/// hidden, on no render layer of an active camera with [`ScreenSpaceFluid`](crate::settings::ScreenSpaceFluid),
+/// or out of their views.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Clone)]
 #[require(FluidMaterial, SurfaceKernel, ShapedFluid, Transform, Visibility)]
@@ -55,6 +58,16 @@ impl FluidParticles {
         }
     }
 
+    /// Moves particles that are in the world's space.
+    fn carry(&mut self, way: &Isometry3d) {
+        for position in &mut self.positions {
+            *position = *way * *position;
+        }
+        for velocity in &mut self.velocities {
+            *velocity = way.rotation * *velocity;
+        }
+    }
+
     /// The velocities, if there is one for each particle.
     #[cfg(feature = "recordings")]
     pub(crate) fn whole_velocities(&self) -> &[Vec3] {
@@ -91,15 +104,21 @@ pub enum ParticleSpace {
     /// The space of their entity: its transform moves, turns and scales them.
     #[default]
     Local,
-    /// The world: the transform of their entity leaves them where they are.
+    /// The world: the transform of their entity leaves them where they are. They come along with a
+    /// [`WorldShift`](crate::relocation::WorldShift).
     World,
 }
 
-/// The result of shaping a fluid. The splats themselves go to the render world.
+/// The result of shaping a fluid, when a camera saw it last. The splats themselves go to the render
+/// world.
 #[derive(Component, Clone, Debug, Default)]
 pub struct ShapedFluid {
     pub(crate) splats: FluidSplats,
     fresh: bool,
+    /// Whether the particles or the kernel have changed since.
+    is_stale: bool,
+    /// Whether no camera sees it: it need not be shaped.
+    is_unseen: bool,
     generation: u64,
     /// Why the fluid is not drawn; logged when it changes.
     error: Option<String>,
@@ -138,26 +157,38 @@ impl ShapedFluid {
         self.generation
     }
 
+    /// Whether the splats are older than the particles.
+    pub(crate) fn is_stale(&self) -> bool {
+        self.is_stale
+    }
+
+    /// Tells whether no camera sees the fluid.
+    pub(crate) fn set_unseen(&mut self, is_unseen: bool) {
+        self.is_unseen = is_unseen;
+    }
+
     /// Whether the splats are new since the last call.
     pub(crate) fn take_fresh(&mut self) -> bool {
         core::mem::take(&mut self.fresh)
     }
 }
 
-/// Shapes every fluid whose particles or kernel have changed.
+/// Shapes every fluid in sight whose particles or kernel have changed since it was shaped last.
 pub(crate) fn shape_fluids(
-    mut fluids: Query<
-        (
-            Entity,
-            &FluidParticles,
-            &Checked<SurfaceKernel>,
-            &mut ShapedFluid,
-        ),
-        Or<(Changed<FluidParticles>, Changed<Checked<SurfaceKernel>>)>,
-    >,
+    mut fluids: Query<(
+        Entity,
+        Ref<FluidParticles>,
+        Ref<Checked<SurfaceKernel>>,
+        &mut ShapedFluid,
+    )>,
     mut workspace: Local<ShapeWorkspace>,
 ) {
     for (entity, particles, kernel, mut shaped) in &mut fluids {
+        let known = shaped.bypass_change_detection();
+        known.is_stale |= particles.is_changed() || kernel.is_changed();
+        if !known.is_stale || known.is_unseen {
+            continue;
+        }
         let misfit = particles.misfit();
         if let Some((column, len)) = misfit.filter(|&(column, _)| shaped.misfit != Some(column)) {
             let count = particles.positions.len();
@@ -165,17 +196,64 @@ pub(crate) fn shape_fluids(
         }
         shaped.misfit = misfit.map(|(column, _)| column);
         let splats = &mut shaped.splats;
-        let result = workspace.shape(&particles.positions, particles.radius, kernel, splats);
+        let result = workspace.shape(&particles.positions, particles.radius, &kernel, splats);
         let error = result.err().map(|error| error.to_string());
         if let Some(error) = error.as_ref().filter(|_| error != shaped.error) {
             warn!("fluid {entity} is not drawn: {error}");
         }
         shaped.error = error;
+        shaped.is_stale = false;
         shaped.fresh = true;
         shaped.generation += 1;
     }
 }
 
+/// Moves a fluid's particles, if they are in the world's space. For those who watch for particles
+/// that others have written, this is no change.
+fn carry(particles: &mut Mut<FluidParticles>, shaped: &mut Mut<ShapedFluid>, way: &Isometry3d) {
+    if particles.space == ParticleSpace::World && !particles.positions.is_empty() {
+        particles.bypass_change_detection().carry(way);
+        shaped.bypass_change_detection().is_stale = true;
+    }
+}
+
+fn shift(mut fluids: Query<(&mut FluidParticles, &mut ShapedFluid)>, relocated: Res<Relocated>) {
+    let way = Isometry3d::from_translation(relocated.shift);
+    for (mut particles, mut shaped) in &mut fluids {
+        carry(&mut particles, &mut shaped, &way);
+    }
+}
+
+fn teleport(
+    mut fluids: Query<(Entity, &mut FluidParticles, &mut ShapedFluid)>,
+    teleports: Teleports,
+) {
+    for (entity, mut particles, mut shaped) in &mut fluids {
+        if let Some(Some(way)) = teleports.of(entity) {
+            carry(&mut particles, &mut shaped, &way);
+        }
+    }
+}
+
+/// Takes particles along when they or the world are put elsewhere.
+struct CarryPlugin;
+
+impl Plugin for CarryPlugin {
+    fn build(&self, app: &mut App) {
+        relocation::on_shift(app, shift);
+        relocation::on_teleport(app, teleport);
+    }
+}
+
+/// Adds the systems that take particles along. Each plugin that keeps some in the world does so, as
+/// it may be the only one.
+pub(crate) fn carried(app: &mut App) {
+    if !app.is_plugin_added::<CarryPlugin>() {
+        app.add_plugins(CarryPlugin);
+    }
+}
+
 pub(crate) fn plugin(app: &mut App) {
+    carried(app);
     app.add_systems(PostUpdate, shape_fluids.in_set(FluidSystems::Shape));
 }

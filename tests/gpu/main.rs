@@ -14,5 +14,6 @@ mod order;
 mod rain;
 mod random_cameras;
 mod refraction;
+mod relocation;
 mod smoothing;
 mod textures;

@@ -55,7 +55,8 @@ fn vertex(@builtin(vertex_index) index: u32, cell: Voxel) -> Varying {
     let falls = speed(diameter);
     let start = uniform_of(pcg(slot ^ 0x68E31DA4u));
     // Every cell on the drop's path holds a copy of it; this selects the one now in this cell.
-    let row = i32(round((f32(cell.tile) + cell.fraction) / cell.size));
+    // A metre is a whole number of cells: at any height rows are exact.
+    let row = cell.tile * i32(round(1.0 / cell.size)) + i32(round(cell.fraction / cell.size));
     let fallen = falls * rain.seconds / cell.size;
     let left = start - fract(fallen);
     let height = fract(left);

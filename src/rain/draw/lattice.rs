@@ -231,6 +231,8 @@ pub(crate) fn add_voxels(
     mut keep: impl FnMut(&mut GpuQuad) -> bool,
 ) -> bool {
     let axis = fall_axis(clock.lean);
+    // In the lattice.
+    let place = eye.position - clock.origin;
     for (index, level) in levels.iter().enumerate() {
         if level.start >= distance {
             break;
@@ -245,16 +247,16 @@ pub(crate) fn add_voxels(
             f32::INFINITY
         };
         let heights = cells(
-            eye.position.y + f64::from(eye.low.y.max(-around) - content.longest()),
-            eye.position.y + f64::from(eye.high.y.min(around)),
+            place.y + f64::from(eye.low.y.max(-around) - content.longest()),
+            place.y + f64::from(eye.high.y.min(around)),
         );
         let end = level.end.min(distance);
         for y in heights {
             let center_y = (y as f64 + 0.5) * size;
-            let relative_y = (center_y - eye.position.y) as f32;
+            let relative_y = (center_y - place.y) as f32;
             // Place of the column with index 0 at this height.
             let shift = clock.anchor - clock.lean.as_dvec2() * (center_y - clock.height);
-            let shift = [shift.x - eye.position.x, shift.y - eye.position.z];
+            let shift = [shift.x - place.x, shift.y - place.z];
             let range = |side: usize| {
                 let i = 2 * side;
                 let (mut low, mut high) = (eye.low[i], eye.high[i]);

@@ -85,6 +85,17 @@ pub(crate) fn sort_far_to_near<T>(things: &mut [T], bounds: impl Fn(&T) -> Bound
     }
 }
 
+/// Whether points in clip space all lie beyond one of a view's planes.
+fn is_outside(clip: &[Vec4; 8]) -> bool {
+    let all = |outside: fn(&Vec4) -> bool| clip.iter().all(outside);
+    all(|c| c.x < -c.w)
+        || all(|c| c.x > c.w)
+        || all(|c| c.y < -c.w)
+        || all(|c| c.y > c.w)
+        || all(|c| c.z > c.w)
+        || all(|c| c.z < 0.0)
+}
+
 impl Default for Bounds {
     fn default() -> Self {
         Self::EMPTY
@@ -116,6 +127,12 @@ impl Bounds {
         })
     }
 
+    /// Whether a view may show a part of the box.
+    pub(crate) fn is_in_view(&self, clip_from_eye: &Mat4) -> bool {
+        // Products that overflow compare as in view.
+        !self.is_empty() && !is_outside(&self.corners().map(|p| *clip_from_eye * p.extend(1.0)))
+    }
+
     /// The pixels of a view of `size` that the box may cover; `None` if it cannot be seen.
     pub(crate) fn rect(&self, clip_from_eye: &Mat4, size: UVec2) -> Option<URect> {
         if self.is_empty() || size.x == 0 || size.y == 0 {
@@ -127,14 +144,7 @@ impl Bounds {
         if !clip.iter().all(|c| c.is_finite()) {
             return Some(whole);
         }
-        let all = |outside: fn(&Vec4) -> bool| clip.iter().all(outside);
-        if all(|c| c.x < -c.w)
-            || all(|c| c.x > c.w)
-            || all(|c| c.y < -c.w)
-            || all(|c| c.y > c.w)
-            || all(|c| c.z > c.w)
-            || all(|c| c.z < 0.0)
-        {
+        if is_outside(&clip) {
             return None;
         }
         // The projection is unbounded.

@@ -72,7 +72,8 @@ pub(super) fn extract_fluids(
             .unwrap_or_else(|| new.insert(ExtractedFluid::default()));
         fluid.transform = particles.world_from_particles(transform);
         fluid.material = material.map(|it| **it).unwrap_or_default();
-        fluid.visible = visibility.get();
+        // Splats of where the particles were when they were seen last are not drawn.
+        fluid.visible = visibility.get() && !shaped.is_stale();
         fluid.local_radius = particles.radius;
         fluid.radius = particles.radius * mean_scale(&fluid.transform.affine().matrix3);
         fluid

@@ -7,6 +7,7 @@ mod grouping;
 pub(crate) mod plan;
 mod prepare;
 pub(crate) mod reasons;
+mod sight;
 mod uniforms;
 mod variant;
 pub(crate) mod views;
@@ -136,6 +137,7 @@ pub(crate) fn plugin<M>(app: &mut App, shortcuts: bool, can_draw: impl SystemCon
             SyncComponentPlugin::<ScreenSpaceFluid>::default(),
             SyncComponentPlugin::<FluidParticles>::default(),
         ));
+        sight::plugin(app);
     }
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;

@@ -1,6 +1,6 @@
 //! The particles that an emitter emits in a step, whatever moves them afterwards.
 
-use core::f32::consts::TAU;
+use core::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
 
@@ -40,6 +40,7 @@ impl Emission {
     /// oldest first, those of a burst last. It is to be called in every frame, to follow the
     /// emitter's path; nothing is born while no time passes.
     ///
+    /// They are spread along the way there, unless that is a jump: longer than at `fastest` (m/s).
     /// Nothing is born where the transform is not finite or has no rotation, as with a scale of 0.
     /// `emitter` comes from [`ParticleEmitter::take`]. If more would be born than its capacity,
     /// only the last ones are.
@@ -48,12 +49,15 @@ impl Emission {
         emitter: &ParticleEmitter,
         to: &GlobalTransform,
         seconds: f64,
+        fastest: f32,
         mut birth: impl FnMut(Birth),
     ) {
         let from = core::mem::replace(&mut self.last, Pose::new(to));
         let Some(to) = self.last.filter(|_| seconds > 0.0) else {
             return;
         };
+        let farthest = fastest * seconds as f32;
+        let from = from.filter(|from| !from.jumps_to(&to, farthest));
         let from = from.unwrap_or(to);
         let nozzle = Nozzle::new(emitter);
         let rate = if emitter.enabled {
@@ -85,25 +89,50 @@ impl Emission {
         self.born = self.born.wrapping_add(all);
         self.owed = total.fract();
     }
+
+    /// The world is shifted.
+    pub(super) fn shift(&mut self, by: Vec3) {
+        if let Some(last) = &mut self.last {
+            last.translation += by;
+        }
+    }
+
+    /// The emitter has been put elsewhere: nothing is spread along the way there.
+    pub(super) fn forget_place(&mut self) {
+        self.last = None;
+    }
 }
 
 /// An emitter's place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
-    scale: Vec3,
+    /// What is left of the transform without the rotation: scale, and the shear of a hierarchy.
+    stretch: Mat3,
     rotation: Quat,
     translation: Vec3,
 }
 
 impl Pose {
     fn new(transform: &GlobalTransform) -> Option<Self> {
-        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        let is_sound = scale.is_finite() && rotation.is_finite() && translation.is_finite();
+        let (_, rotation, translation) = transform.to_scale_rotation_translation();
+        let rotation = rotation.normalize();
+        let matrix = Mat3::from(transform.affine().matrix3);
+        let stretch = Mat3::from_quat(rotation.inverse()) * matrix;
+        let is_sound = stretch.is_finite() && rotation.is_finite() && translation.is_finite();
         is_sound.then_some(Self {
-            scale,
+            stretch,
             rotation,
             translation,
         })
+    }
+
+    /// Whether there is no way from here to there: it is longer than `farthest` (m), or one of the
+    /// two is mirrored or turned over, as by a scale that passes zero.
+    fn jumps_to(&self, to: &Self, farthest: f32) -> bool {
+        let is_mirrored = |pose: &Self| pose.stretch.determinant() < 0.0;
+        self.translation.distance(to.translation) > farthest
+            || is_mirrored(self) != is_mirrored(to)
+            || self.rotation.angle_between(to.rotation) > 0.75 * PI
     }
 
     /// A part of the way from here to there.
@@ -112,14 +141,14 @@ impl Pose {
             return *to;
         }
         Self {
-            scale: self.scale.lerp(to.scale, part),
+            stretch: self.stretch + (to.stretch - self.stretch) * part,
             rotation: self.rotation.slerp(to.rotation, part),
             translation: self.translation.lerp(to.translation, part),
         }
     }
 
     fn vector(&self, vector: Vec3) -> Vec3 {
-        self.rotation * (self.scale * vector)
+        self.rotation * (self.stretch * vector)
     }
 }
 

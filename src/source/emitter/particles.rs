@@ -16,6 +16,7 @@ use super::{
     step,
 };
 use crate::{
+    relocation::SpeedLimit,
     settings::Checked,
     source::particles::{FluidParticles, ParticleSpace},
 };
@@ -202,6 +203,7 @@ pub(super) fn emit(
         Without<ExternalMotion>,
     >,
     transforms: TransformHelper,
+    fastest: SpeedLimit,
     time: Res<Time>,
 ) {
     let seconds = step(&time);
@@ -211,7 +213,8 @@ pub(super) fn emit(
         };
         particles.truncate_to_columns(&mut fluid);
         let settings = ParticleEmitter::take(&mut emitter, checked, seconds);
-        emission.emit(&settings, &transform, seconds, |birth: Birth| {
+        let fastest = fastest.get();
+        emission.emit(&settings, &transform, seconds, fastest, |birth: Birth| {
             particles.ages.push(birth.age - seconds as f32);
             fluid.positions.push(birth.position);
             fluid.velocities.push(birth.velocity);
@@ -237,10 +240,11 @@ pub(super) fn simulate(
     mut colliders: Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
     transforms: TransformHelper,
     mut list: Local<Colliders>,
+    fastest: SpeedLimit,
     time: Res<Time>,
 ) {
     let seconds = step(&time) as f32;
-    list.gather(&mut colliders, &transforms);
+    list.gather(&mut colliders, &transforms, fastest.get() * seconds);
     for (entity, emitter, mut particles, mut fluid) in &mut emitters {
         let Ok(transform) = transforms.compute_global_transform(entity) else {
             continue;

@@ -8,6 +8,7 @@ use super::{
     world::{Command, Limits, Newborn},
 };
 use crate::{
+    relocation::SpeedLimit,
     settings::Checked,
     source::emitter::{Emission, ParticleEmitter, step},
 };
@@ -26,6 +27,7 @@ pub(crate) fn emit(
         With<SalvaFluid>,
     >,
     transforms: TransformHelper,
+    fastest: SpeedLimit,
     time: Res<Time>,
 ) {
     // Where the liquid moves in slow motion, so does what comes out.
@@ -41,7 +43,7 @@ pub(crate) fn emit(
         };
         let own = ParticleEmitter::take(&mut emitter, checked, seconds);
         let mut newborn = Newborn::default();
-        emission.emit(&own, &transform, seconds, |birth| {
+        emission.emit(&own, &transform, seconds, fastest.get(), |birth| {
             let fallen = 0.5 * birth.age * settings.gravity;
             newborn
                 .positions

@@ -12,8 +12,9 @@ use crate::{
 /// The simulation starts with the positions of the [`FluidParticles`] on its entity, and overwrites
 /// them from then on. Particles within a solid (other than a mesh) are removed at the start. To
 /// restart, write positions yourself: the simulation continues with them, at
-/// [`velocity`](Self::velocity). Neighbours at rest are two radii apart: fill with a lattice of
-/// that spacing, one radius off the walls.
+/// [`velocity`](Self::velocity). To put them elsewhere together with their tank, use a
+/// [`Teleport`](crate::relocation::Teleport) that carries them. Neighbours at rest are two radii
+/// apart: fill with a lattice of that spacing, one radius off the walls.
 ///
 /// All fluids have one radius in world space, that of the first; a fluid with another radius is
 /// logged once and not simulated. Fluids of different [`density`](Self::density) press on each

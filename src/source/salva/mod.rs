@@ -75,6 +75,7 @@ mod error;
 mod fluid;
 mod gather;
 mod pace;
+mod relocate;
 mod runner;
 mod settings;
 mod shape;
@@ -96,7 +97,14 @@ pub use self::{
 };
 
 use crate::{
-    needs::need_time, schedule::Movers, settings::check, source::emitter::ParticleEmitter,
+    needs::need_time,
+    relocation,
+    schedule::Movers,
+    settings::check,
+    source::{
+        emitter::{self, ParticleEmitter},
+        particles,
+    },
 };
 
 /// Simulates every [`SalvaFluid`] among [`SalvaBoundary`]s and [`SalvaBody`]s.
@@ -115,6 +123,10 @@ impl Plugin for SalvaPlugin {
         check::<SalvaBody>(app);
         check::<SalvaSettings>(app);
         check::<ParticleEmitter>(app);
+        particles::carried(app);
+        emitter::relocated(app);
+        relocation::on_shift(app, relocate::shift);
+        relocation::on_teleport(app, relocate::teleport);
         app.register_type::<SalvaFluid>()
             .register_type::<SalvaBoundary>()
             .register_type::<SalvaBody>()

@@ -18,9 +18,10 @@ use super::{
     SalvaError, SalvaMode, SalvaSettings, SalvaStatus,
     gather::{FluidEntry, SolidEntry},
     pace::Pace,
+    relocate::Relocation,
     world::{Command, Frame, Job, Report, World},
 };
-use crate::settings::Checked;
+use crate::{relocation::SpeedLimit, settings::Checked};
 
 /// A world that comes back from a job, unless it panicked.
 type Finished = Option<(Box<World>, Frame, Report)>;
@@ -43,10 +44,17 @@ pub(crate) struct Simulation {
     pub(crate) from: Frame,
     pub(crate) to: Frame,
     spare: Frame,
+    /// What has been put elsewhere while a job was in flight, with the number of commands given
+    /// until then.
+    relocations: Vec<(u64, Relocation)>,
     /// Solids whose surfaces take too many particles, to be logged.
     pub(crate) unsampled: Vec<u64>,
     pub(crate) pace: Pace,
+    /// Solids that move faster have jumped, m/s.
+    fastest: f32,
     planned: f64,
+    /// How much has been simulated in lockstep beyond the app's time, s.
+    ahead: f64,
     pub(crate) shown: f64,
     pub(crate) fluids: EntityHashMap<FluidEntry>,
     pub(crate) solids: EntityHashMap<SolidEntry>,
@@ -65,6 +73,18 @@ impl Simulation {
             self.told += 1;
         }
         self.told
+    }
+
+    /// Whether nothing has been simulated yet, nor is to be.
+    pub(super) fn is_untouched(&self) -> bool {
+        self.world.is_none() && self.task.is_none() && self.commands.is_empty()
+    }
+
+    /// Keeps for the state that a job in flight will hand over what it does not know.
+    pub(super) fn remember(&mut self, told: u64, relocation: Relocation) {
+        if self.task.is_some() {
+            self.relocations.push((told, relocation));
+        }
     }
 
     fn pool(&mut self, mode: SalvaMode) -> Option<Arc<ThreadPool>> {
@@ -129,7 +149,7 @@ impl Simulation {
     }
 
     fn finish(&mut self, finished: Finished, status: &mut SalvaStatus) {
-        let Some((world, frame, report)) = finished else {
+        let Some((world, mut frame, report)) = finished else {
             error!("the simulation panicked; fluids and bodies stay where they are");
             status.stopped = true;
             self.is_over = true;
@@ -137,6 +157,11 @@ impl Simulation {
             return;
         };
         self.world = Some(world);
+        for (told, relocation) in self.relocations.drain(..) {
+            if told > frame.applied {
+                relocation.apply(&mut frame);
+            }
+        }
         self.spare = core::mem::replace(&mut self.from, core::mem::replace(&mut self.to, frame));
         let simulated = f64::from(report.simulated);
         let took = report.took.as_secs_f64();
@@ -192,8 +217,10 @@ pub(crate) fn advance(
     mut simulation: ResMut<Simulation>,
     settings: Single<&Checked<SalvaSettings>>,
     mut status: ResMut<SalvaStatus>,
+    fastest: SpeedLimit,
     time: Res<Time>,
 ) {
+    simulation.fastest = fastest.get();
     let delta = if settings.paused {
         0.0
     } else {
@@ -214,29 +241,35 @@ pub(crate) fn advance(
 }
 
 impl Simulation {
-    /// All of the update's time, in steps of equal length.
+    /// All of the update's time, in steps of equal length. Pressure that had to act within far
+    /// shorter ones would throw particles apart: in slow motion a whole step is done ahead, and
+    /// shown bit by bit.
     fn lockstep(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
-        if delta > 0.0 {
-            let steps = (delta / f64::from(settings.step) - 1e-3).ceil().max(1.0);
-            let step = (delta / steps) as f32;
+        let whole = f64::from(settings.step);
+        let due = delta - self.ahead;
+        if delta > 0.0 && due > 1e-6 * whole {
+            let time = if due < 0.499 * whole { whole } else { due };
+            let steps = (time / whole - 1e-3).ceil().max(1.0);
             self.pace = Pace::default();
-            self.begin(
-                job(settings, steps as u32, step, None),
-                settings.mode,
-                status,
-            );
+            let job = self.job(settings, steps as u32, (time / steps) as f32, None);
+            self.begin(job, settings.mode, status);
+            self.ahead = time - due;
+        } else {
+            self.ahead = (-due).max(0.0);
         }
-        self.shown = self.to.time;
+        let shown = self.to.time - self.ahead;
+        self.shown = shown.clamp(self.from.time, self.to.time);
     }
 
     fn background(&mut self, delta: f64, settings: &SalvaSettings, status: &mut SalvaStatus) {
+        self.ahead = 0.0;
         let budget = settings.budget.as_secs_f64();
         self.pace.tick(delta, budget, self.task.is_some());
         if self.task.is_none() && delta > 0.0 {
             let steps = self.pace.due(f64::from(settings.step), settings.max_steps);
             if steps > 0 {
                 let budget = Some(Duration::from_secs_f64(budget));
-                let job = job(settings, steps, settings.step, budget);
+                let job = self.job(settings, steps, settings.step, budget);
                 self.begin(job, settings.mode, status);
             }
         }
@@ -253,16 +286,23 @@ impl Simulation {
             1.0
         }
     }
-}
 
-fn job(settings: &SalvaSettings, steps: u32, step: f32, budget: Option<Duration>) -> Job {
-    Job {
-        steps,
-        step,
-        budget,
-        max_substeps: settings.max_substeps,
-        gravity: settings.gravity,
-        max_speed: settings.max_speed,
-        bounds: [settings.low, settings.high],
+    fn job(
+        &self,
+        settings: &SalvaSettings,
+        steps: u32,
+        step: f32,
+        budget: Option<Duration>,
+    ) -> Job {
+        Job {
+            steps,
+            step,
+            budget,
+            max_substeps: settings.max_substeps,
+            gravity: settings.gravity,
+            max_speed: settings.max_speed,
+            jump_speed: self.fastest.min(settings.max_speed),
+            bounds: [settings.low, settings.high],
+        }
     }
 }

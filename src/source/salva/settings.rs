@@ -44,10 +44,10 @@ pub struct SalvaSettings {
     #[reflect(@SettingRange::new(1.0, 1e4).unit("m/s").logarithmic())]
     pub max_speed: f32,
     /// The least coordinates of a particle; particles outside are removed. Unit: m, default -1000
-    /// each.
+    /// each. A [`WorldShift`](crate::relocation::WorldShift) shifts them.
     #[reflect(@SettingRange::new(-1e3, 1e3).unit("m").open())]
     pub low: Vec3,
-    /// The greatest coordinates of a particle. Unit: m, default 1000 each.
+    /// The greatest coordinates of a particle. Unit: m, default 1000 each. A shift moves them too.
     #[reflect(@SettingRange::new(-1e3, 1e3).unit("m").open())]
     pub high: Vec3,
 }
@@ -81,7 +81,8 @@ pub enum SalvaMode {
     #[default]
     Background,
     /// The app waits in every update until the liquid has advanced by exactly the update's time, on
-    /// one thread. Deterministic: equal updates give equal bits, on one machine. For tests and
+    /// one thread. Updates shorter than half a [`step`](SalvaSettings::step), as in slow motion, show
+    /// parts of whole steps. Deterministic: equal updates give equal bits, on one machine. For tests and
     /// recordings.
     Lockstep,
 }

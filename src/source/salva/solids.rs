@@ -38,9 +38,11 @@ impl<T: Into<SolidShape>> From<T> for SalvaShape {
 /// A solid that liquid and [`SalvaBody`]s collide with: at rest, or moved by its transform.
 ///
 /// Between two frames it moves evenly, and its velocity acts on the liquid: a plunger makes waves,
-/// a tipped tank pours. To teleport it, insert it again; a move faster than
-/// [`SalvaSettings::max_speed`](super::SalvaSettings::max_speed) also teleports it. No particle
-/// passes its surface, from either side, however fast.
+/// a tipped tank pours. It jumps, without a velocity, when it is inserted again or
+/// [teleported](crate::relocation), and when it moves faster than
+/// [`TeleportSettings::speed`](crate::relocation::TeleportSettings::speed) or
+/// [`SalvaSettings::max_speed`](super::SalvaSettings::max_speed). No particle passes its surface,
+/// from either side, however fast.
 ///
 /// It always follows its transform, even while the liquid moves in slow motion: at a fifth of the
 /// speed, a plunger of 1 m/s hits the liquid at 5 m/s. Where that matters, move it in the liquid's
@@ -100,7 +102,9 @@ impl Default for SalvaBoundary {
 /// [`density`](Self::density) is less than the fluid's.
 ///
 /// Its `Transform` is written in every update, in world space: it must have no parent. A transform
-/// written by other code teleports it, at rest. It should be several particles across.
+/// written by other code teleports it, at rest, but for a
+/// [`WorldShift`](crate::relocation::WorldShift), through which it goes on. It should be several
+/// particles across.
 ///
 /// Other changes leave its motion unchanged; inserting it again restarts it. On an entity that also
 /// has a [`SalvaBoundary`], the body takes precedence. Values out of range are logged once and

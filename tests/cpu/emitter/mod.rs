@@ -6,6 +6,8 @@ mod bounces;
 mod clock;
 mod ends;
 mod flight;
+mod hierarchy;
+mod relocation;
 mod settings;
 mod solids;
 

@@ -9,4 +9,5 @@ mod life;
 mod limits;
 mod meshes;
 mod pool;
+mod relocation;
 mod rest;

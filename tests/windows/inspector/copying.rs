@@ -47,10 +47,11 @@ fn settings_are_copied_as_code() {
     let fluid = copied(&mut app, "copy fluid");
     let [name, kernel] = ["Name::new(\"pond\")", "SurfaceKernel::default()"];
     assert!(fluid.contains(name) && fluid.contains(kernel), "{fluid}");
-    let resource = "commands.insert_resource(Weather {\n    wet: true,\n});";
+    let resources = "commands.insert_resource(TeleportSettings::default());\n\
+        commands.insert_resource(Weather {\n    wet: true,\n});";
     assert_eq!(
         copied(&mut app, "Copy all as Rust"),
-        format!("{camera}\n{fluid}\n{resource}")
+        format!("{camera}\n{fluid}\n{resources}")
     );
 }
 

@@ -39,18 +39,20 @@ const NOWHERE: Aabb3d = Aabb3d {
 };
 
 impl Colliders {
-    /// Collects all colliders of this step.
+    /// Collects all colliders of this step. What gets farther in it than `farthest` (m) has jumped.
     pub(in crate::source::emitter) fn gather(
         &mut self,
         colliders: &mut Query<(Entity, &Checked<ParticleCollider>, &mut ColliderPath)>,
         transforms: &TransformHelper,
+        farthest: f32,
     ) {
         self.list.clear();
         self.half_spaces = 0;
         self.bounds = NOWHERE;
         for (entity, collider, mut path) in colliders {
             let transform = transforms.compute_global_transform(entity).ok();
-            let collider = transform.and_then(|at| Collider::new(collider, &at, &mut path));
+            let collider =
+                transform.and_then(|at| Collider::new(collider, &at, &mut path, farthest));
             let Some(collider) = collider else {
                 continue;
             };

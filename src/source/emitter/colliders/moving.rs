@@ -12,6 +12,15 @@ use crate::source::solid::SolidShape;
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(in crate::source::emitter) struct ColliderPath(Option<Pose>);
 
+impl ColliderPath {
+    /// The world is shifted.
+    pub(in crate::source::emitter) fn shift(&mut self, by: Vec3) {
+        if let Some(last) = &mut self.0 {
+            last.translation += Vec3A::from(by);
+        }
+    }
+}
+
 /// Where a collider is, without its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pose {
@@ -26,6 +35,11 @@ impl Pose {
 
     fn to_local(self, point: Vec3A) -> Vec3A {
         self.rotation.inverse() * (point - self.translation)
+    }
+
+    /// How far a point gets from here to there that is a metre from the axis of the turn.
+    fn way_to(&self, to: &Self) -> f32 {
+        self.translation.distance(to.translation) + self.rotation.angle_between(to.rotation)
     }
 }
 
@@ -52,21 +66,27 @@ pub(super) enum Reach {
 }
 
 impl Collider {
-    /// `None` for a transform that is not finite or has no rotation.
+    /// `None` for a transform that is not finite or has no rotation. If the way since the last step
+    /// is longer than `farthest` (m), it has jumped and does not move.
     pub(super) fn new(
         collider: &ParticleCollider,
         transform: &GlobalTransform,
         path: &mut ColliderPath,
+        farthest: f32,
     ) -> Option<Self> {
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         if !(translation.is_finite() && rotation.is_normalized()) {
+            // When it is there again, it has not come from where it was before.
+            *path = ColliderPath::default();
             return None;
         }
         let to = Pose {
             rotation,
             translation: translation.into(),
         };
-        let from = path.0.replace(to).unwrap_or(to);
+        let from = path.0.replace(to);
+        let from = from.filter(|from| from == &to || from.way_to(&to) <= farthest);
+        let from = from.unwrap_or(to);
         let solid = collider.shape.scaled(scale);
         let world_from_local = Affine3A::from_rotation_translation(rotation, translation);
         Some(Self {

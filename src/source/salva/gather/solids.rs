@@ -1,6 +1,8 @@
 //! Boundaries and bodies: new ones, changed ones, and those that have moved.
 
-use bevy::{ecs::message::MessageCursor, prelude::*, transform::helper::TransformHelper};
+use bevy::{
+    ecs::message::MessageCursor, math::Vec3A, prelude::*, transform::helper::TransformHelper,
+};
 
 use crate::{
     settings::Checked,
@@ -27,8 +29,29 @@ pub(crate) struct SolidEntry {
     pub(crate) is_moved: bool,
     /// Whether it has been inserted again.
     is_anew: bool,
+    /// Whether it has been put elsewhere.
+    pub(crate) jumps: bool,
+    /// By how much its place may differ by rounding since the world was shifted, m.
+    slack: f32,
     /// Why its form was refused: it is not tried again.
     pub(crate) refused: Option<SalvaError>,
+}
+
+impl SolidEntry {
+    /// The world is shifted.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        let size = Vec3::from(self.at.translation).abs() + by.abs();
+        self.at.translation += Vec3A::from(by);
+        self.slack += 4.0 * f32::EPSILON * size.max_element();
+    }
+
+    /// Whether `at` is another place than it is known at. Several shifts may have been summed up in
+    /// another order than the transform's.
+    fn is_moved_to(&mut self, at: Isometry3d) -> bool {
+        let slack = core::mem::take(&mut self.slack);
+        let is_turned = self.at.rotation != at.rotation;
+        is_turned || self.at.translation.distance(at.translation) > slack
+    }
 }
 
 /// What a solid's shape is made of.
@@ -159,7 +182,17 @@ impl Simulation {
         transforms: &TransformHelper,
     ) -> Result<(), SalvaError> {
         let transform = transforms.compute_global_transform(entity);
-        let (at, scale) = split(&transform.map_err(|_| SalvaError::Transform)?)?;
+        let place = transform.map_err(|_| SalvaError::Transform);
+        let (at, scale) = match place.and_then(|place| split(&place)) {
+            Ok(place) => place,
+            Err(error) => {
+                // What has no place or no extent is not where it was either.
+                if self.solids.remove(&entity).is_some() {
+                    self.tell(Command::RemoveSolid(entity.to_bits()));
+                }
+                return Err(error);
+            }
+        };
         let is_mesh = shape == SalvaShape::Mesh;
         let form = Form {
             shape,
@@ -194,10 +227,11 @@ impl Simulation {
         if let Some(error) = known.refused {
             return Err(error);
         }
-        let is_moved = known.at != at;
+        let jumps = core::mem::take(&mut known.jumps);
+        let is_moved = known.is_moved_to(at);
         known.at = at;
         known.is_moved |= is_moved && !known.form.is_body;
-        let jumps = is_moved && known.form.is_body;
+        let jumps = is_moved && (known.form.is_body || jumps);
         if core::mem::replace(&mut known.traits, traits) != traits {
             self.tell(Command::Alter(id, traits));
         }
@@ -248,6 +282,8 @@ impl Simulation {
             made,
             is_moved: false,
             is_anew: false,
+            jumps: false,
+            slack: 0.0,
             refused,
         };
         self.solids.insert(entity, entry);

@@ -37,6 +37,10 @@ pub(crate) enum Command {
     /// Where a solid is at once.
     Jump(Id, Isometry3d),
     RemoveSolid(Id),
+    /// Everything is moved by this way (m): the origin is elsewhere.
+    Shift(Vec3),
+    /// All particles of a fluid are moved.
+    Carry(Id, Isometry3d),
 }
 
 /// The work to do in one go.
@@ -52,6 +56,8 @@ pub(crate) struct Job {
     pub(crate) gravity: Vec3,
     /// m/s; what is faster is taken out.
     pub(crate) max_speed: f32,
+    /// m/s; a solid whose way is faster jumps.
+    pub(crate) jump_speed: f32,
     /// What is outside is taken out, m.
     pub(crate) bounds: [Vec3; 2],
 }
@@ -77,6 +83,13 @@ impl Command {
     pub(crate) fn join(self, waiting: &mut Vec<Self>) {
         waiting.retain(|old| !self.replaces(old));
         waiting.push(self);
+        waiting.dedup_by(|next, first| match (first, next) {
+            (Self::Shift(first), Self::Shift(next)) => {
+                *first += *next;
+                true
+            }
+            _ => false,
+        });
     }
 
     fn replaces(&self, old: &Self) -> bool {
@@ -98,6 +111,7 @@ impl Command {
             | Self::Substance(id, _)
             | Self::Add(id, _)
             | Self::Limit(id, _)
+            | Self::Carry(id, _)
             | Self::RemoveFluid(id) => Some(*id),
             _ => None,
         }
@@ -204,6 +218,23 @@ impl World {
                     self.take_out_solid(&solid);
                 }
             }
+            Command::Shift(by) => self.shift(by),
+            Command::Carry(id, way) => {
+                if let Some(liquid) = self.liquids.get(&id) {
+                    liquid.carry(&mut self.liquid_world, &way);
+                }
+            }
+        }
+    }
+
+    fn shift(&mut self, by: Vec3) {
+        let way = Isometry3d::from_translation(by);
+        for liquid in self.liquids.values_mut() {
+            liquid.carry(&mut self.liquid_world, &way);
+            liquid.limits.shift(by);
+        }
+        for solid in self.solids.values_mut() {
+            solid.shift(&mut self.rigid_world, by);
         }
     }
 
@@ -225,5 +256,38 @@ impl World {
     fn take_out_solid(&mut self, solid: &Solid) {
         self.liquid_world.remove_boundary(solid.boundary);
         self.rigid_world.remove_body(solid.body);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// While time is paused, no number of shifts piles up, whatever is told between them.
+    #[test]
+    fn shifts_join() {
+        let limits = |x: f32| {
+            let bounds = Some((Mat4::from_translation(Vec3::X * x), [Vec3::ZERO, Vec3::ONE]));
+            Command::Limit(
+                7,
+                Limits {
+                    bounds,
+                    ..default()
+                },
+            )
+        };
+        let mut waiting = Vec::new();
+        for i in 0..10 {
+            Command::Shift(Vec3::X).join(&mut waiting);
+            limits(i as f32).join(&mut waiting);
+        }
+        let [Command::Shift(way), Command::Limit(..)] = waiting[..] else {
+            panic!("{} commands", waiting.len());
+        };
+        assert_eq!(way, Vec3::X * 10.0);
+        // What is added between two shifts comes along with the second alone.
+        Command::Add(7, Newborn::default()).join(&mut waiting);
+        Command::Shift(Vec3::Y).join(&mut waiting);
+        assert_eq!(waiting.len(), 4);
     }
 }

@@ -29,9 +29,38 @@ pub(crate) struct LiquidFrame {
     pub(crate) velocities: Vec<Vec3>,
 }
 
+impl LiquidFrame {
+    fn carry(&mut self, way: &Isometry3d) {
+        for position in &mut self.positions {
+            *position = *way * *position;
+        }
+        for velocity in &mut self.velocities {
+            *velocity = way.rotation * *velocity;
+        }
+    }
+}
+
 impl Frame {
     pub(crate) fn liquid(&self, id: Id) -> Option<&LiquidFrame> {
         self.liquids.iter().find(|liquid| liquid.id == id)
+    }
+
+    /// The world is shifted.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        let way = Isometry3d::from_translation(by);
+        for liquid in &mut self.liquids {
+            liquid.carry(&way);
+        }
+        for (_, at) in &mut self.bodies {
+            at.translation += way.translation;
+        }
+    }
+
+    /// A fluid's particles are moved.
+    pub(crate) fn carry(&mut self, id: Id, way: &Isometry3d) {
+        if let Some(liquid) = self.liquids.iter_mut().find(|liquid| liquid.id == id) {
+            liquid.carry(way);
+        }
     }
 
     pub(crate) fn body(&self, id: Id) -> Option<Isometry3d> {

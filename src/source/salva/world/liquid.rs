@@ -62,6 +62,15 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// The world is shifted.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        if let Some((to_space, _)) = &mut self.bounds {
+            *to_space *= Mat4::from_translation(-by);
+        }
+    }
+}
+
 /// How far a particle that is added keeps from others, in diameters.
 const ELBOW_ROOM: f32 = 0.8;
 
@@ -190,6 +199,19 @@ impl Liquid {
             self.next_id = self.next_id.wrapping_add(1);
         }
         newborn.positions.len() - positions.len()
+    }
+
+    /// Moves and turns all particles.
+    pub(crate) fn carry(&self, world: &mut LiquidWorld, way: &Isometry3d) {
+        let Some(fluid) = world.fluids_mut().get_mut(self.handle) else {
+            return;
+        };
+        for position in &mut fluid.positions {
+            *position = liquid(*way * from_liquid(position));
+        }
+        for velocity in &mut fluid.velocities {
+            *velocity = liquid(way.rotation * from_liquid(velocity));
+        }
     }
 
     pub(crate) fn remove_all(&self, world: &mut LiquidWorld) {

@@ -1,6 +1,6 @@
 //! Boundaries and bodies: the solids that liquid collides with.
 
-use bevy::prelude::*;
+use bevy::{math::Vec3A, prelude::*};
 use salva3d::{
     LiquidWorld,
     object::{Boundary, BoundaryHandle, interaction_groups::InteractionGroups},
@@ -222,6 +222,20 @@ impl Solid {
         self.read_body(rigid_world);
     }
 
+    /// The world is shifted: it goes on as before.
+    pub(crate) fn shift(&mut self, rigid_world: &mut PhysicsWorld, by: Vec3) {
+        for at in [&mut self.before, &mut self.at, &mut self.target] {
+            at.translation += Vec3A::from(by);
+        }
+        self.center += by;
+        if let Some(body) = rigid_world.bodies.get_mut(self.body) {
+            let mut at = from_pose(body.position());
+            at.translation += Vec3A::from(by);
+            body.set_position(pose(at), true);
+        }
+        self.read_body(rigid_world);
+    }
+
     /// Takes over the state of a dynamic body.
     pub(crate) fn read_body(&mut self, rigid_world: &PhysicsWorld) {
         if let Some(body) = rigid_world.bodies.get(self.body)
@@ -304,6 +318,11 @@ impl Solid {
             body.apply_impulse(rigid(push), true);
             body.apply_torque_impulse(rigid(turn), true);
         }
+    }
+
+    /// Speed, m/s, at the most that of a point a metre from the axis of its turn.
+    pub(crate) fn speed(&self) -> f32 {
+        self.velocity.length() + self.angular_velocity.length()
     }
 
     /// World-space velocity of the solid at a world-space `place`.

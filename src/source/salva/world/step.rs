@@ -25,8 +25,8 @@ impl World {
         let total = job.steps as f32 * job.step;
         for solid in self.solids.values_mut() {
             solid.head_for_target(total);
-            // So fast it would only sweep particles out of the world.
-            if !solid.is_dynamic() && solid.velocity.length() > job.max_speed {
+            // So fast it has been put elsewhere, and would only throw particles out of the world.
+            if !solid.is_dynamic() && solid.speed() > job.jump_speed {
                 solid.jump(&mut self.rigid_world, solid.target);
             }
             (solid.pushed, solid.turned) = (Vec3::ZERO, Vec3::ZERO);
@@ -190,6 +190,7 @@ mod tests {
             max_substeps: 4,
             gravity: Vec3::NEG_Y * 9.81,
             max_speed: 100.0,
+            jump_speed: 50.0,
             bounds: [Vec3::splat(-1e3), Vec3::splat(1e3)],
         }
     }
