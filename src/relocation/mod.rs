@@ -78,7 +78,7 @@
 //!
 //! A message belongs to a change of transforms in the same system, or in the same frame on the same
 //! side of [`FluidSystems`](crate::FluidSystems). It may be written in any schedule; in
-//! [`PostUpdate`](bevy::app::PostUpdate), before
+//! [`PostUpdate`], before
 //! [`FluidSystems::Check`](crate::FluidSystems::Check) or after
 //! [`FluidSystems::Simulate`](crate::FluidSystems::Simulate).
 
