@@ -8,7 +8,7 @@ use bevy::{
         mip_generation::experimental::depth::late_downsample_depth,
     },
     ecs::schedule::{
-        InternedSystemSet, IntoSystemSet, NodeId, ScheduleCleanupPolicy, ScheduleGraph,
+        InternedSystemSet, IntoSystemSet, NodeId, ScheduleCleanupPolicy, ScheduleGraph, SystemKey,
         graph::Direction,
     },
     pbr::main_transmissive_pass_3d,
@@ -19,41 +19,45 @@ use super::FluidPasses;
 
 /// Call it when all plugins have added their passes.
 pub(super) fn order(render_app: &mut SubApp) {
-    keep_liquid_out_of_occlusion_culling(render_app);
-    let mut between = Vec::new();
+    let mut between: Vec<InternedSystemSet> = Vec::new();
+    // First: systems leave the graph when the schedule is built.
     render_app.edit_schedule(Core3d, |schedule| {
-        between = between_opaque_and_transparent(schedule.graph());
+        let graph = schedule.graph();
+        let passes = between_opaque_and_transparent(graph);
+        let systems = passes.filter_map(|pass| graph.systems.get(pass));
+        between.extend(systems.flat_map(|it| it.system().default_system_sets()));
     });
     for pass in between {
         render_app.configure_sets(Core3d, FluidPasses::Composite.after(pass));
     }
+    keep_liquid_out_of_occlusion_culling(render_app);
 }
 
 /// Whatever runs between the opaque and the transparent pass, but in no order with the composite:
 /// Bevy's `render_sky`, which is private and in no set, and passes of others. The liquid is drawn
 /// after them, so that it shows them.
-fn between_opaque_and_transparent(graph: &ScheduleGraph) -> Vec<InternedSystemSet> {
+fn between_opaque_and_transparent(graph: &ScheduleGraph) -> impl Iterator<Item = SystemKey> {
     let node = |set: InternedSystemSet| graph.system_sets.get_key(set).map(NodeId::Set);
-    let (Some(opaque), Some(transparent), Some(composite)) = (
-        node(main_opaque_pass_3d.into_system_set().intern()),
-        node(main_transparent_pass_3d.into_system_set().intern()),
-        node(FluidPasses::Composite.intern()),
-    ) else {
-        return Vec::new();
+    let opaque = node(main_opaque_pass_3d.into_system_set().intern());
+    let transparent = node(main_transparent_pass_3d.into_system_set().intern());
+    let transmissive = node(main_transmissive_pass_3d.into_system_set().intern());
+    let composite = node(FluidPasses::Composite.intern());
+    let (order, members) = (graph.dependency().graph(), graph.hierarchy().graph());
+    let runs = move |first: Option<NodeId>, second: Option<NodeId>| {
+        first
+            .zip(second)
+            .is_some_and(|(a, b)| order.contains_edge(a, b))
     };
-    let transmissive = main_transmissive_pass_3d.into_system_set().intern();
-    let dependencies = graph.dependency().graph();
-    dependencies
-        .neighbors_directed(opaque, Direction::Outgoing)
-        .filter(|&pass| {
-            dependencies.contains_edge(pass, transparent)
-                && !dependencies.contains_edge(pass, composite)
-                && !dependencies.contains_edge(composite, pass)
+    opaque
+        .into_iter()
+        .flat_map(|opaque| order.neighbors_directed(opaque, Direction::Outgoing))
+        .filter(move |&pass| {
+            runs(Some(pass), transparent)
+                && !runs(Some(pass), composite)
+                && !runs(composite, Some(pass))
+                && !transmissive.is_some_and(|set| members.contains_edge(set, pass))
         })
-        .filter_map(|pass| graph.systems.get(pass.as_system()?))
-        .flat_map(|pass| pass.system().default_system_sets())
-        .filter(|&set| set != transmissive)
-        .collect()
+        .filter_map(|pass| pass.as_system())
 }
 
 /// The depth that tells which meshes are hidden in the next frame is taken before the liquid is in
@@ -90,12 +94,24 @@ mod tests {
         let schedules = world.resource::<Schedules>();
         let graph = schedules.get(Core3d).unwrap().graph();
         let node = |set| NodeId::Set(graph.system_sets.get_key(set).unwrap());
-        let between = between_opaque_and_transparent(graph);
-        assert_eq!(between.len(), 1, "{between:?}");
-        let edges = graph.dependency().graph();
-        assert!(edges.contains_edge(node(between[0]), node(FluidPasses::Composite.intern())));
+        let (order, members) = (graph.dependency().graph(), graph.hierarchy().graph());
+        let sky: Vec<_> = between_opaque_and_transparent(graph).collect();
+        assert_eq!(sky.len(), 1);
+        let composite = node(FluidPasses::Composite.intern());
+        let is_before = |set| order.contains_edge(set, composite);
+        let mut sets = members.neighbors_directed(NodeId::System(sky[0]), Direction::Incoming);
+        assert!(sets.any(is_before));
         let occlusion = node(late_downsample_depth.into_system_set().intern());
-        let late: Vec<_> = graph.hierarchy().graph().neighbors(occlusion).collect();
-        assert_eq!(late.len(), 1, "it was moved, not doubled");
+        assert_eq!(
+            members.neighbors(occlusion).count(),
+            1,
+            "moved, not doubled"
+        );
+        assert!(
+            order.contains_edge(occlusion, composite) || {
+                let mut late = members.neighbors(occlusion);
+                late.any(is_before)
+            }
+        );
     }
 }
