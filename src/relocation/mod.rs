@@ -71,15 +71,14 @@
 //! | a `SalvaFluid` | its liquid stays | its liquid is moved along: for a tank, as its child or told beside it |
 //! | a camera with `Rain` | nothing is needed: drops are fixed in the world | the same |
 //!
-//! A `SalvaBody` jumps, to rest, whenever its transform is written, but for a shift of the world. A move faster than
-//! [`TeleportSettings::speed`] is a jump without a message, alone.
+//! A `SalvaBody` jumps, to rest, whenever its transform is written, but for a shift of the world. A
+//! move faster than [`TeleportSettings::speed`] is a jump without a message, alone.
 //!
 //! # When
 //!
 //! A message belongs to a change of transforms in the same system, or in the same frame on the same
 //! side of [`FluidSystems`](crate::FluidSystems). It may be written in any schedule; in
-//! [`PostUpdate`], before
-//! [`FluidSystems::Check`](crate::FluidSystems::Check) or after
+//! [`PostUpdate`], before [`FluidSystems::Check`](crate::FluidSystems::Check) or after
 //! [`FluidSystems::Simulate`](crate::FluidSystems::Simulate).
 
 mod messages;
