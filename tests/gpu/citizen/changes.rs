@@ -6,8 +6,13 @@ use bevy::{
     asset::RenderAssetUsages,
     camera::{Hdr, RenderTarget, Viewport},
     core_pipeline::tonemapping::Tonemapping,
+    render::{RenderApp, render_resource::PipelineCache},
+    window::WindowRef,
 };
-use bevy_fluid::{render::PlanReports, settings::FluidDebugView};
+use bevy_fluid::{
+    render::{PlanReports, TextureMemory},
+    settings::FluidDebugView,
+};
 use fluid_stage::{Stage, step};
 
 type Change = fn(&mut World, Entity, Entity);
@@ -263,4 +268,103 @@ fn rain_stays_while_its_target_changes() {
             );
         }
     }
+}
+
+/// A second camera, in a window that is made smaller, minimised and closed.
+#[test]
+fn a_window_that_is_minimised_or_closed_stops_no_liquid_elsewhere() {
+    let mut app = scene(Color::WHITE, FluidMaterial::INK, |_, _| {});
+    let window = app.world_mut().spawn(Window::default()).id();
+    let target = RenderTarget::Window(WindowRef::Entity(window));
+    let other = (Camera3d::default(), ScreenSpaceFluid::default(), target);
+    let other = app.world_mut().spawn(other).id();
+    let sizes = [uvec2(640, 480), uvec2(1, 1), UVec2::ZERO, uvec2(320, 200)];
+    for size in sizes.map(Some).into_iter().chain([None]) {
+        match size {
+            Some(size) => {
+                let mut window = app.world_mut().get_mut::<Window>(window).unwrap();
+                window.resolution.set_physical_resolution(size.x, size.y);
+            }
+            None => {
+                app.world_mut().despawn(window);
+            }
+        }
+        for _ in 0..3 {
+            step(&mut app, 1);
+            assert!(pixel(&mut app, MIDDLE)[0] < 110, "{size:?}");
+        }
+        assert_sound(&app);
+    }
+    assert!(app.world().get_entity(other).is_ok());
+}
+
+/// Sixteen times in a row, as a lava lamp does: the same surface, textures and pipelines.
+#[test]
+fn a_material_may_change_in_every_frame() {
+    let mut app = scene(Color::WHITE, FluidMaterial::INK, |_, _| {});
+    let liquid = crate::common::only::<FluidParticles>(&mut app);
+    let state = |app: &App| {
+        let surfaces = crate::common::view_surfaces(app).unwrap().surfaces.clone();
+        let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
+        let memory = app.world().resource::<TextureMemory>().bytes();
+        (surfaces, cache.pipelines().count(), memory)
+    };
+    let before = state(&app);
+    for i in 0..16 {
+        let mut material = app.world_mut().get_mut::<FluidMaterial>(liquid).unwrap();
+        material.medium.absorption_color = LinearRgba::rgb(1.0, 1.0 - 0.02 * i as f32, 1.0);
+        material.refractive_index = 1.3 + 0.01 * i as f32;
+        step(&mut app, 1);
+        assert!(state(&app) == before, "frame {i}");
+    }
+}
+
+/// The eye goes down through the surface of a pool, a centimetre a frame.
+#[test]
+fn the_waterline_passes_the_eye_without_a_flash() {
+    let mut camera = Entity::PLACEHOLDER;
+    let mut app = headless_app(SIZE, |app| {
+        app.add_plugins(FluidPlugin::default())
+            .insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+        let world = app.world_mut();
+        let view = (Camera3d::default(), ScreenSpaceFluid::default(), Msaa::Off);
+        camera = world.spawn(view).id();
+        let (low, high) = (vec3(-1.6, -1.0, -2.6), vec3(1.6, 0.0, 0.6));
+        let pool = fluid_stage::lattice(low, high, 0.08);
+        world.spawn((FluidParticles::new(pool, 0.04), FluidMaterial::WATER));
+        let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
+        for (size, at) in [
+            (vec3(9.0, 9.0, 0.1), vec3(0.0, 0.0, -2.8)),
+            (vec3(9.0, 0.1, 9.0), vec3(0.0, -1.1, 0.0)),
+            (vec3(0.1, 9.0, 9.0), vec3(-1.75, 0.0, 0.0)),
+            (vec3(0.1, 9.0, 9.0), vec3(1.75, 0.0, 0.0)),
+        ] {
+            paint(world, size, grey.clone(), at);
+        }
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    // Mean light of the lower half, and how much of it is the sky's colour: a hole.
+    let mut seen = Vec::new();
+    for i in 0..=24 {
+        let y = 0.12 - 0.01 * i as f32;
+        let at = Transform::from_xyz(0.0, y, 0.0);
+        app.world_mut().entity_mut(camera).insert(at);
+        step(&mut app, 1);
+        assert_sound(&app);
+        let picture = capture(&mut app).unwrap();
+        let below = || {
+            picture
+                .enumerate_pixels()
+                .filter(|(_, y, _)| *y > SIZE.y / 2)
+        };
+        let sum: u64 = below().map(|(_, _, pixel)| u64::from(pixel.0[1])).sum();
+        let holes = below().filter(|(_, _, pixel)| pixel.0[1] < 20).count();
+        seen.push((sum as f64 / below().count() as f64, holes));
+    }
+    for (frame, pair) in seen.windows(2).enumerate() {
+        let step = (pair[1].0 - pair[0].0).abs();
+        assert!(step < 25.0, "between {frame} and the next: {seen:?}");
+    }
+    assert!(seen.iter().all(|(_, holes)| *holes < 40), "{seen:?}");
 }

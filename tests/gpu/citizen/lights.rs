@@ -103,3 +103,57 @@ fn a_lamp_of_another_layer_does_not_light_rain() {
     let (here, elsewhere) = (lit(0), lit(1));
     assert!(here > 10_000 && elsewhere < here / 20, "{here} {elsewhere}");
 }
+
+/// The next frame knows of every change.
+#[test]
+fn a_light_that_changes_is_seen_in_the_next_frame() {
+    let mut light = Entity::PLACEHOLDER;
+    let mut app = scene(Color::BLACK, FluidMaterial::MILK, |world, _| {
+        light = world.spawn(sun(20_000.0)).id();
+    });
+    let mut now = |change: &dyn Fn(EntityWorldMut)| {
+        change(app.world_mut().entity_mut(light));
+        fluid_stage::step(&mut app, 1);
+        pixel(&mut app, MIDDLE)
+    };
+    let white = now(&|_| {});
+    let recolor = |mut light: EntityWorldMut| {
+        light.get_mut::<DirectionalLight>().unwrap().color = Color::srgb(1.0, 0.0, 0.0);
+    };
+    let red = now(&recolor);
+    assert!(
+        white[2] > 60 && red[2] < 10 && red[0] > 60,
+        "{white:?} {red:?}"
+    );
+    let elsewhere = now(&|mut light| {
+        light.insert(RenderLayers::layer(5));
+    });
+    let hidden = now(&|mut light| {
+        light.insert((RenderLayers::layer(0), Visibility::Hidden));
+    });
+    let back = now(&|mut light| {
+        light.insert(Visibility::Inherited);
+    });
+    let gone = now(&|light| light.despawn());
+    assert!(elsewhere[0] < 10 && hidden[0] < 10 && gone[0] < 10);
+    assert_eq!(back, red);
+}
+
+/// Lamps light neither milk nor water; where they are must not matter.
+#[test]
+fn lamps_in_and_on_the_liquid_do_no_harm() {
+    let mut app = scene(Color::BLACK, FluidMaterial::MILK, |world, camera| {
+        world.entity_mut(camera).insert(Rain::HEAVY);
+        for (z, range) in [
+            (-2.5, 20.0),
+            (-3.0, 20.0),
+            (-2.0, 0.0),
+            (-2.0, f32::INFINITY),
+        ] {
+            let lamp = PointLight { range, ..default() };
+            world.spawn((lamp, Transform::from_xyz(0.0, 0.0, z)));
+        }
+    });
+    crate::common::assert_sound(&app);
+    assert_eq!(pixel(&mut app, MIDDLE)[3], 255);
+}
