@@ -25,12 +25,14 @@ struct Fogged {
 
 // The light of a directional light that a ray towards it scatters into the eye.
 fn glow(fog: Fog, to_light: vec3<f32>, illuminance: vec3<f32>, ray: vec3<f32>) -> vec3<f32> {
-    return pow(max(dot(ray, to_light), 0.0), fog.glow_exponent) * illuminance;
+    // Nothing to the power of nothing is undefined.
+    let facing = max(dot(ray, to_light), 1e-6);
+    return pow(facing, max(fog.glow_exponent, 1e-3)) * illuminance;
 }
 
 // Over `distance` metres; `glow` is the sum over the lights, exposed.
 fn fog_over(fog: Fog, distance: f32, glow: vec3<f32>) -> Fogged {
-    let range = fog.extinction.y - fog.extinction.x;
+    let range = max(fog.extinction.y - fog.extinction.x, 1e-6);
     let linear = 1.0 - saturate((fog.extinction.y - distance) / range);
     let thickness = distance * fog.extinction;
     let power = select(thickness, thickness * thickness, fog.falloff == SQUARED);

@@ -33,9 +33,9 @@ pub(super) fn order(render_app: &mut SubApp) {
     keep_liquid_out_of_occlusion_culling(render_app);
 }
 
-/// Whatever runs between the opaque and the transparent pass, but in no order with the composite:
-/// Bevy's `render_sky`, which is private and in no set, and passes of others. The liquid is drawn
-/// after them, so that it shows them.
+/// Whatever runs between the opaque and the transparent pass, and not after the composite: Bevy's
+/// `render_sky`, which is private and in no set, and passes of others. The liquid is drawn after
+/// them, so that it shows them.
 fn between_opaque_and_transparent(graph: &ScheduleGraph) -> impl Iterator<Item = SystemKey> {
     let node = |set: InternedSystemSet| graph.system_sets.get_key(set).map(NodeId::Set);
     let opaque = node(main_opaque_pass_3d.into_system_set().intern());
@@ -43,21 +43,44 @@ fn between_opaque_and_transparent(graph: &ScheduleGraph) -> impl Iterator<Item =
     let transmissive = node(main_transmissive_pass_3d.into_system_set().intern());
     let composite = node(FluidPasses::Composite.intern());
     let (order, members) = (graph.dependency().graph(), graph.hierarchy().graph());
-    let runs = move |first: Option<NodeId>, second: Option<NodeId>| {
-        first
-            .zip(second)
-            .is_some_and(|(a, b)| order.contains_edge(a, b))
-    };
+    let not_before: Vec<NodeId> = [composite, transmissive]
+        .into_iter()
+        .flatten()
+        .flat_map(|set| with_what_follows(graph, set))
+        .collect();
     opaque
         .into_iter()
         .flat_map(|opaque| order.neighbors_directed(opaque, Direction::Outgoing))
         .filter(move |&pass| {
-            runs(Some(pass), transparent)
-                && !runs(Some(pass), composite)
-                && !runs(composite, Some(pass))
-                && !transmissive.is_some_and(|set| members.contains_edge(set, pass))
+            transparent.is_some_and(|transparent| order.contains_edge(pass, transparent))
+                && !composite.is_some_and(|set| members.contains_edge(set, pass))
+                && !not_before.contains(&pass)
         })
         .filter_map(|pass| pass.as_system())
+}
+
+/// A set with its members, and all that runs after any of them.
+fn with_what_follows(graph: &ScheduleGraph, set: NodeId) -> Vec<NodeId> {
+    let (order, members) = (graph.dependency().graph(), graph.hierarchy().graph());
+    let mut found = vec![set];
+    let mut next = 0;
+    while let Some(&node) = found.get(next) {
+        next += 1;
+        // Sets that hold it are ordered for it, too.
+        let mut holders = vec![node];
+        let mut holder = 0;
+        while let Some(&of) = holders.get(holder) {
+            holder += 1;
+            holders.extend(members.neighbors_directed(of, Direction::Incoming));
+        }
+        let later = holders.into_iter().flat_map(|it| order.neighbors(it));
+        for node in members.neighbors(node).chain(later) {
+            if !found.contains(&node) {
+                found.push(node);
+            }
+        }
+    }
+    found
 }
 
 /// The depth that tells which meshes are hidden in the next frame is taken before the liquid is in
@@ -65,7 +88,11 @@ fn between_opaque_and_transparent(graph: &ScheduleGraph) -> impl Iterator<Item =
 fn keep_liquid_out_of_occlusion_culling(render_app: &mut SubApp) {
     let policy = ScheduleCleanupPolicy::RemoveSystemsOnly;
     let moved = render_app.remove_systems_in_set(Core3d, late_downsample_depth, policy);
-    if moved.is_ok_and(|systems| systems > 0) {
+    let moved = moved.unwrap_or_else(|error| {
+        error!("occlusion culling may hide what is behind liquid: {error}");
+        0
+    });
+    if moved > 0 {
         render_app.add_systems(
             Core3d,
             late_downsample_depth

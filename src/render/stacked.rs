@@ -1,7 +1,8 @@
 //! Cameras on one target, one over the other.
 
 use bevy::{
-    camera::{Hdr, NormalizedRenderTarget, RenderTarget},
+    camera::{Hdr, RenderTarget},
+    core_pipeline::tonemapping::Tonemapping,
     platform::collections::HashSet,
     prelude::*,
     window::PrimaryWindow,
@@ -9,36 +10,53 @@ use bevy::{
 
 use crate::settings::ScreenSpaceFluid;
 
-type Drawing<'a> = (Entity, &'a Camera, &'a RenderTarget, &'a Msaa, Has<Hdr>);
+type Drawing<'a> = (
+    Entity,
+    &'a Camera,
+    &'a RenderTarget,
+    &'a Msaa,
+    Option<&'a Tonemapping>,
+    Has<Hdr>,
+    Has<ScreenSpaceFluid>,
+);
 
 /// Cameras draw over each other's pictures only in textures of the same kind, and liquids need
-/// [`Hdr`]: a camera below one that draws liquids over its picture gets it too.
+/// [`Hdr`]: a camera below or above one that draws liquids gets it too. Light is then mapped to
+/// tones once, by the camera above.
 pub(super) fn share_targets(
-    over: Query<(Entity, &Camera, &RenderTarget, &Msaa), (With<ScreenSpaceFluid>, With<Hdr>)>,
     cameras: Query<Drawing>,
     window: Query<Entity, With<PrimaryWindow>>,
     mut warned: Local<HashSet<[Entity; 2]>>,
     mut commands: Commands,
 ) {
     let window = window.single().ok();
-    let of = |target: &RenderTarget| -> Option<NormalizedRenderTarget> { target.normalize(window) };
-    for (upper, camera, target, msaa) in &over {
+    for (above, camera, target, msaa, tones, hdr, liquid) in &cameras {
         if !camera.is_active || !matches!(camera.clear_color, ClearColorConfig::None) {
             continue;
         }
-        for (lower, below, target_below, msaa_below, hdr) in &cameras {
-            let is_below = below.is_active && below.order < camera.order;
-            if lower == upper || !is_below || of(target_below) != of(target) {
+        for (below, other, other_target, other_msaa, other_tones, other_hdr, other_liquid) in
+            &cameras
+        {
+            let is_below = other.is_active && other.order < camera.order;
+            let is_shared = target.normalize(window) == other_target.normalize(window);
+            if !is_below || !is_shared || !(liquid || other_liquid) {
                 continue;
             }
-            if !hdr {
-                info!("camera {lower} gets `Hdr`: {upper} draws liquids over its picture");
-                commands.entity(lower).insert(Hdr);
+            if hdr != other_hdr {
+                let (named, draws) = if hdr { (below, above) } else { (above, below) };
+                info!(
+                    "camera {named} gets `Hdr`: it shares its picture with {draws}, which draws liquids"
+                );
+                commands.entity(named).insert(Hdr);
+                let maps = |tones: Option<&Tonemapping>| tones.is_some_and(Tonemapping::is_enabled);
+                if maps(tones) && maps(other_tones) {
+                    commands.entity(below).insert(Tonemapping::None);
+                }
             }
-            if msaa != msaa_below && warned.insert([lower, upper]) {
+            if msaa != other_msaa && warned.insert([below, above]) {
                 warn!(
-                    "camera {upper} draws liquids over the picture of {lower}, but does not see it: \
-                    the two differ in `Msaa`"
+                    "camera {above} draws over the picture of {below}, but does not see it: they \
+                    differ in `Msaa`"
                 );
             }
         }

@@ -2,14 +2,21 @@
 //! them: those behind a surface are drawn before it instead, so that they are seen through it.
 
 use bevy::{
-    core_pipeline::{core_3d::Transparent3d, oit::OrderIndependentTransparencySettings},
+    camera::{MainPassResolutionOverride, Viewport},
+    core_pipeline::{
+        core_3d::{Transparent3d, TransparentSortingInfo3d},
+        oit::OrderIndependentTransparencySettings,
+    },
     image::ToExtents,
-    pbr::{Transmissive3d, ViewTransmissionTexture},
+    pbr::{ScreenSpaceTransmission, Transmissive3d, ViewTransmissionTexture},
     prelude::*,
     render::{
         camera::ExtractedCamera,
-        render_phase::{SortedPhaseItem, SortedRenderPhase, ViewSortedRenderPhases},
-        render_resource::{RenderPassDescriptor, StoreOp},
+        render_phase::{
+            DrawFunctions, PhaseItemExtraIndex, RenderCommand, RenderCommandResult,
+            SortedPhaseItem, SortedRenderPhase, TrackedRenderPass, ViewSortedRenderPhases,
+        },
+        render_resource::{CachedRenderPipelineId, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, ViewDepthTexture, ViewTarget},
     },
@@ -59,27 +66,37 @@ impl Placed for Transparent3d {
 }
 
 impl<I: Placed> Taken<I> {
-    /// `farthest` are the depths at which the surfaces end.
+    /// `surfaces` are the depths from which to which they reach, from far to near.
     fn take(
         &mut self,
         phase: Option<&mut SortedRenderPhase<I>>,
-        farthest: impl Iterator<Item = f32>,
+        surfaces: impl Iterator<Item = Vec2> + Clone,
     ) {
         let Some(phase) = phase else {
             return;
         };
         let mut count = 0;
-        for depth in farthest {
+        for (index, depths) in surfaces.clone().enumerate() {
+            // Among what is painted already it would be in front of all of it.
+            let is_among_painted = |depth: f32| {
+                let mut painted = surfaces.clone().take(index);
+                painted.any(|of| (of.x..=of.y).contains(&depth))
+            };
+            let is_behind = |index: usize| {
+                let depth = phase.items.get_index(index).map(|(_, item)| -item.z());
+                depth.is_some_and(|depth| depth > depths.y && !is_among_painted(depth))
+            };
             // A batch is drawn by its first item, and all at once.
-            while let Some((_, item)) = phase.items.get_index(count)
-                && -item.z() > depth
-            {
-                count += item.batch_range().len().max(1);
+            while let Some((_, item)) = phase.items.get_index(count) {
+                let batch = count..count + item.batch_range().len().max(1);
+                if !batch.clone().all(is_behind) {
+                    break;
+                }
+                count = batch.end;
             }
-            self.behind.push(count.min(phase.items.len()));
+            self.behind.push(count);
         }
-        let last = self.behind.last().copied().unwrap_or(0);
-        self.phase.items.extend(phase.items.drain(..last));
+        self.phase.items.extend(phase.items.drain(..count));
     }
 
     /// The order is made anew in every frame.
@@ -99,6 +116,60 @@ impl<I: Placed> Taken<I> {
     }
 }
 
+/// Stands in the order where a surface ends, so that Bevy joins nothing behind it with things before
+/// it in one batch. It draws nothing.
+pub(super) struct DrawNothing;
+
+impl RenderCommand<Transparent3d> for DrawNothing {
+    type Param = ();
+    type ViewQuery = ();
+    type ItemQuery = ();
+
+    fn render<'w>(
+        _: &Transparent3d,
+        (): (),
+        _: Option<()>,
+        (): (),
+        _: &mut TrackedRenderPass<'w>,
+    ) -> RenderCommandResult {
+        RenderCommandResult::Success
+    }
+}
+
+/// Where surfaces ended in the last frame; whoever has come between since then waits for a frame.
+pub(super) fn mark_ends(
+    views: Query<(&ExtractedView, &ViewSurfaces)>,
+    surfaces: Query<&Surface>,
+    mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
+    functions: Res<DrawFunctions<Transparent3d>>,
+) {
+    let draw_function = functions.read().id::<DrawNothing>();
+    for (view, surfaces_of) in &views {
+        let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
+            continue;
+        };
+        for &entity in &surfaces_of.surfaces {
+            let Ok(surface) = surfaces.get(entity) else {
+                continue;
+            };
+            let end = vec3(0.0, 0.0, -surface.depths.y);
+            phase.add_transient(Transparent3d {
+                sorting_info: TransparentSortingInfo3d::Sorted {
+                    mesh_center: view.world_from_view.transform_point(end),
+                    depth_bias: 0.0,
+                },
+                distance: 0.0,
+                pipeline: CachedRenderPipelineId::INVALID,
+                entity: (entity, view.retained_view_entity.main_entity),
+                draw_function,
+                batch_range: 0..1,
+                extra_index: PhaseItemExtraIndex::None,
+                indexed: false,
+            });
+        }
+    }
+}
+
 pub(crate) fn take_behind(
     view: ViewQuery<(
         &ExtractedView,
@@ -112,16 +183,14 @@ pub(crate) fn take_behind(
 ) {
     let (view, surfaces_of, resolves_transparency) = view.into_inner();
     let view = &view.retained_view_entity;
-    let farthest = || {
-        let surfaces = surfaces.iter_many(&surfaces_of.surfaces);
-        surfaces.map(|surface| surface.depths.y)
-    };
-    behind.glass.take(glass.get_mut(view), farthest());
+    let depths = surfaces_of.surfaces.iter().filter_map(|&surface| {
+        let surface = surfaces.get(surface).ok()?;
+        Some(surface.depths)
+    });
+    behind.glass.take(glass.get_mut(view), depths.clone());
     // Where transparency is independent of order, all of it is resolved at the end.
     if !resolves_transparency {
-        behind
-            .transparent
-            .take(transparent.get_mut(view), farthest());
+        behind.transparent.take(transparent.get_mut(view), depths);
     }
 }
 
@@ -144,7 +213,8 @@ pub(super) struct ViewItems<'a> {
     pub(super) camera: &'a ExtractedCamera,
     pub(super) target: &'a ViewTarget,
     pub(super) depth: &'a ViewDepthTexture,
-    pub(super) transmission: Option<&'a ViewTransmissionTexture>,
+    pub(super) resolution: Option<&'a MainPassResolutionOverride>,
+    pub(super) transmission: Option<(&'a ScreenSpaceTransmission, &'a ViewTransmissionTexture)>,
 }
 
 impl BehindLiquid {
@@ -154,7 +224,9 @@ impl BehindLiquid {
         let something = !glass.is_empty() || !transparent.is_empty();
         // Glass shows what was drawn before it.
         if !glass.is_empty()
-            && let (Some(size), Some(copy)) = (view.camera.physical_target_size, view.transmission)
+            && let (Some(size), Some((settings, copy))) =
+                (view.camera.physical_target_size, view.transmission)
+            && settings.steps > 0
         {
             ctx.command_encoder().copy_texture_to_texture(
                 view.target.main_texture().as_image_copy(),
@@ -184,8 +256,9 @@ impl ViewItems<'_> {
             depth_stencil_attachment: Some(self.depth.get_attachment(StoreOp::Store)),
             ..default()
         });
-        if let Some(viewport) = &self.camera.viewport {
-            pass.set_camera_viewport(viewport);
+        let viewport = self.camera.viewport.as_ref();
+        if let Some(viewport) = Viewport::from_viewport_and_override(viewport, self.resolution) {
+            pass.set_camera_viewport(&viewport);
         }
         if let Err(error) = phase.render_range(&mut pass, self.world, self.entity, items) {
             bevy::utils::once!(error!("an object behind liquid is not drawn: {error:?}"));

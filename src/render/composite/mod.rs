@@ -6,12 +6,14 @@ mod scene;
 
 use bevy::{
     asset::embedded_asset,
-    core_pipeline::prepass::ViewPrepassTextures,
-    pbr::ViewTransmissionTexture,
+    camera::MainPassResolutionOverride,
+    core_pipeline::{core_3d::Transparent3d, prepass::ViewPrepassTextures},
+    pbr::{ScreenSpaceTransmission, ViewTransmissionTexture},
     prelude::*,
     render::{
-        RenderApp,
+        Render, RenderApp, RenderSystems,
         camera::ExtractedCamera,
+        render_phase::{AddRenderCommand, sort_phase_system},
         render_resource::{CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ViewDepthTexture, ViewTarget},
@@ -40,7 +42,15 @@ pub(super) fn plugin(app: &mut App) {
     add_stage::<CompositePipeline>(app);
     scene::plugin(app);
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-        render_app.init_resource::<BehindLiquid>();
+        render_app
+            .init_resource::<BehindLiquid>()
+            .add_render_command::<Transparent3d, behind::DrawNothing>()
+            .add_systems(
+                Render,
+                behind::mark_ends
+                    .in_set(RenderSystems::PhaseSort)
+                    .before(sort_phase_system::<Transparent3d>),
+            );
     }
 }
 
@@ -53,7 +63,8 @@ pub(super) fn composite(
         &ExtractedCamera,
         &ViewTarget,
         &ViewDepthTexture,
-        Option<&ViewTransmissionTexture>,
+        Option<(&ScreenSpaceTransmission, &ViewTransmissionTexture)>,
+        Option<&MainPassResolutionOverride>,
         Option<&ViewPrepassTextures>,
         &ViewSurfaces,
         &ViewLighting,
@@ -65,13 +76,15 @@ pub(super) fn composite(
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
-    let (camera, target, depth, transmission, prepass, view, lighting, scene) = view.into_inner();
+    let (camera, target, depth, transmission, resolution, prepass, view, lighting, scene) =
+        view.into_inner();
     let items = ViewItems {
         world,
         entity,
         camera,
         target,
         depth,
+        resolution,
         transmission,
     };
     let drawn = |&(surface, ..): &Composited| {

@@ -61,7 +61,7 @@ fn wait_for_blit(
     mut surfaces: Query<&mut Surface>,
     blit: Res<BlitPipeline>,
     mut specialized: ResMut<SpecializedRenderPipelines<BlitPipeline>>,
-    cache: Res<PipelineCache>,
+    mut cache: ResMut<PipelineCache>,
 ) {
     for (view, mut scene) in &mut views {
         let mut surfaces = surfaces.iter_many_mut(&view.surfaces);
@@ -74,6 +74,9 @@ fn wait_for_blit(
             };
             let id = specialized.specialize(&cache, &blit, key);
             scene.blit = Some(id);
+            if surface.vanishes() {
+                cache.block_on_render_pipeline(id);
+            }
             if cache.get_render_pipeline(id).is_none() {
                 surface.waiting = Some(Waiting::new(SPAN, id, &cache));
             }

@@ -174,11 +174,7 @@ fn request<S: Stage>(
             }
             kept.slots[spare] = Some(Slot { variant, pipelines });
         }
-        // What is drawn now cannot be drawn to the wanted target: better a slow frame than one
-        // without the liquid.
-        let vanishes = surface
-            .drawn
-            .is_some_and(|drawn| !drawn.fits(&surface.wanted));
+        let vanishes = surface.vanishes();
         let wanted = kept.of(&surface.wanted);
         for (_, id) in wanted.iter().flat_map(|slot| &slot.pipelines) {
             if vanishes {

@@ -77,6 +77,12 @@ impl Surface {
         self.drawn.as_ref().map(|variant| &variant.plan)
     }
 
+    /// Whether what is drawn now cannot be drawn to the wanted target: better a slow frame, for the
+    /// pipelines that it takes, than one without the liquid.
+    pub(crate) fn vanishes(&self) -> bool {
+        self.drawn.is_some_and(|drawn| !drawn.fits(&self.wanted))
+    }
+
     /// The pixels of the view, from its upper left, that it may cover.
     pub fn rect(&self) -> URect {
         self.rect
@@ -191,7 +197,7 @@ fn choose_variants(mut surfaces: Query<&mut Surface>) {
         let wanted = surface.wanted;
         if surface.waiting.is_none() {
             surface.drawn = Some(wanted);
-        } else if surface.drawn.is_some_and(|drawn| !drawn.fits(&wanted)) {
+        } else if surface.vanishes() {
             surface.drawn = None;
         }
     }

@@ -4,7 +4,7 @@ use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::DepthPrepass,
     math::{Affine3A, Vec3A},
-    pbr::{PrepassPipeline, resources::AtmosphereTextures},
+    pbr::{GpuAtmosphereSettings, PrepassPipeline, resources::AtmosphereTextures},
     prelude::*,
     render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
 };
@@ -60,6 +60,8 @@ pub(super) fn prepare_surfaces(
         Option<&MainPassResolutionOverride>,
         Has<DepthPrepass>,
         Has<AtmosphereTextures>,
+        // Of an atmosphere that has ended, only the textures stay.
+        Has<GpuAtmosphereSettings>,
     )>,
     prepass: Option<Res<PrepassPipeline>>,
     mut painted: Query<(Entity, &mut ViewSurfaces)>,
@@ -77,7 +79,7 @@ pub(super) fn prepare_surfaces(
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
     }
-    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, atmosphere) in &views {
+    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, air, has_air) in &views {
         if camera.physical_target_size.is_none() {
             continue;
         }
@@ -168,7 +170,7 @@ pub(super) fn prepare_surfaces(
                 format: view.target_format,
                 samples: msaa.samples(),
                 scene_depth,
-                atmosphere,
+                atmosphere: air && has_air,
                 several: scratch.groups.len() > 1,
             };
             let depths = eye.depths(bounds);

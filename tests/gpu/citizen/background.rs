@@ -60,6 +60,33 @@ fn a_sky_dome_without_depth_is_seen_through_water() {
     );
 }
 
+/// The sky on screen is green, the environment that lights the scene is red.
+#[test]
+fn the_sky_box_is_seen_through_water_rather_than_the_environment() {
+    use bevy::light::Skybox;
+    let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
+        let mut images = world.resource_mut::<Assets<Image>>();
+        let mut solid = |color| EnvironmentMapLight::solid_color(&mut images, color);
+        let (sky, light) = (
+            solid(Color::srgb(0.0, 1.0, 0.0)),
+            solid(Color::srgb(1.0, 0.0, 0.0)),
+        );
+        let sky = Skybox {
+            image: Some(sky.specular_map),
+            brightness: 1000.0,
+            ..default()
+        };
+        let light = EnvironmentMapLight {
+            intensity: 1000.0,
+            ..light
+        };
+        world.entity_mut(camera).insert((sky, light));
+    });
+    let (sky, through) = (pixel(&mut app, uvec2(5, 5)), pixel(&mut app, MIDDLE));
+    assert!(sky[1] > 100, "{sky:?}");
+    assert!(through[1] > 2 * through[0], "{sky:?} {through:?}");
+}
+
 #[test]
 fn a_transparent_target_keeps_what_the_liquid_lets_through() {
     let mut smoke = FluidMaterial::SMOKE;

@@ -107,20 +107,77 @@ fn milk_hides_a_pane_behind_it() {
     }
 }
 
-/// The view moves, so that what the last frame hid matters.
+/// Two equal panes, which Bevy would draw in one batch: one is behind milk, one before it.
+#[test]
+fn one_of_two_panes_is_behind_milk() {
+    let mut app = scene(Color::BLACK, FluidMaterial::MILK, |world, _| {
+        let mesh = world
+            .resource_mut::<Assets<Mesh>>()
+            .add(Cuboid::new(0.4, 0.4, 0.02));
+        let red = blended(Color::srgba(1.0, 0.0, 0.0, 0.5));
+        let red = world.resource_mut::<Assets<StandardMaterial>>().add(red);
+        for z in [-2.0, -5.0] {
+            let at = Transform::from_xyz(0.0, 0.0, z);
+            world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(red.clone()), at));
+        }
+    });
+    let mut milk = scene(Color::BLACK, FluidMaterial::MILK, |_, _| {});
+    let milk = pixel(&mut milk, MIDDLE);
+    for _ in 0..3 {
+        fluid_stage::step(&mut app, 1);
+        let seen = pixel(&mut app, MIDDLE);
+        assert!(
+            seen[0] > milk[1] + 40 && seen[1] < milk[1],
+            "{milk:?} {seen:?}"
+        );
+    }
+}
+
+/// A pane between two liquids of which the farther one reaches around it.
+#[test]
+fn a_pane_within_a_farther_liquid_does_not_come_out_before_it() {
+    let middle = |pane: bool| {
+        let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, _| {
+            let milk = FluidParticles::new(ball(8.0, 0.5), 0.5);
+            let at = Transform::from_xyz(0.0, 0.0, -14.0);
+            world.spawn((milk, FluidMaterial::MILK, at));
+            if pane {
+                let red = blended(Color::srgba(1.0, 0.0, 0.0, 0.9));
+                paint(world, vec3(9.0, 9.0, 0.02), red, vec3(0.0, 0.0, -14.0));
+            }
+        });
+        pixel(&mut app, MIDDLE)
+    };
+    let (without, with) = (middle(false), middle(true));
+    assert!(differ(without, with) < 8, "{without:?} {with:?}");
+}
+
+/// The eye moves, so that what the last frame hid matters.
 #[test]
 fn occlusion_culling_keeps_what_is_behind_clear_water() {
-    let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
-        let culls = (OcclusionCulling, DepthPrepass, Msaa::Off);
-        world.entity_mut(camera).insert(culls);
-        let red = unlit(Color::srgb(0.9, 0.1, 0.1));
-        paint(world, Vec3::splat(0.2), red, vec3(0.0, 0.0, -6.0));
+    let mut cameras = Vec::new();
+    let [mut culled, mut whole] = [true, false].map(|culls| {
+        scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
+            cameras.push(camera);
+            world.entity_mut(camera).insert((DepthPrepass, Msaa::Off));
+            if culls {
+                world.entity_mut(camera).insert(OcclusionCulling);
+            }
+            let red = unlit(Color::srgb(0.9, 0.1, 0.1));
+            paint(world, Vec3::splat(0.2), red, vec3(0.0, 0.0, -6.0));
+        })
     });
-    let before = pixel(&mut app, MIDDLE);
-    assert!(before[0] > 100, "{before:?}");
-    for _ in 0..4 {
-        fluid_stage::step(&mut app, 1);
-        assert!(differ(before, pixel(&mut app, MIDDLE)) < 8);
+    for i in 0..6 {
+        for (app, camera) in [&mut culled, &mut whole].into_iter().zip(&cameras) {
+            let at = Transform::from_xyz(0.01 * i as f32, 0.0, 0.0);
+            app.world_mut().entity_mut(*camera).insert(at);
+            fluid_stage::step(app, 1);
+        }
+        let (seen, all) = (pixel(&mut culled, MIDDLE), pixel(&mut whole, MIDDLE));
+        assert!(
+            all[0] > 100 && differ(seen, all) < 8,
+            "frame {i}: {seen:?} {all:?}"
+        );
     }
 }
 

@@ -35,24 +35,55 @@ fn stacked(msaa: Msaa) -> App {
     app
 }
 
-/// The lower camera has no `Hdr` of its own.
+/// The lower camera has no `Hdr` of its own. Its wall keeps its colour: tones are mapped once.
 #[test]
 fn what_a_lower_camera_draws_is_refracted() {
     let mut app = stacked(Msaa::default());
+    let mut alone = headless_app(SIZE, |app| {
+        let world = app.world_mut();
+        world.spawn(Camera3d::default());
+        let red = unlit(Color::srgb(0.9, 0.1, 0.1));
+        paint(world, vec3(9.0, 9.0, 0.1), red, vec3(0.0, 0.0, -6.0));
+    })
+    .unwrap();
+    settle(&mut alone).unwrap();
+    let lone = pixel(&mut alone, MIDDLE);
     let (wall, through) = (pixel(&mut app, uvec2(10, 60)), pixel(&mut app, MIDDLE));
-    assert!(wall[0] > 150 && wall[1] < 90, "{wall:?}");
+    assert!(lone[0] > 150 && differ(lone, wall) < 6, "{lone:?} {wall:?}");
     assert!(through[0] > 100 && through[1] < 120, "{through:?}");
+}
+
+/// A camera without `Hdr` over one with liquid: what moves in it leaves no trail.
+#[test]
+fn what_an_upper_camera_draws_leaves_no_trail() {
+    let mut thing = Entity::PLACEHOLDER;
+    let mut app = scene(Color::WHITE, FluidMaterial::INK, |world, _| {
+        let above = Camera {
+            order: 1,
+            clear_color: ClearColorConfig::None,
+            ..default()
+        };
+        let layer = RenderLayers::layer(1);
+        world.spawn((Camera3d::default(), above, layer.clone()));
+        let green = unlit(Color::srgb(0.1, 0.9, 0.1));
+        thing = paint(world, Vec3::splat(0.2), green, vec3(0.0, 0.0, -2.0));
+        world.entity_mut(thing).insert(layer);
+    });
+    let before = pixel(&mut app, MIDDLE);
+    assert!(before[1] > 100 && before[0] < 100, "{before:?}");
+    let aside = Transform::from_xyz(0.7, 0.0, -2.0);
+    app.world_mut().entity_mut(thing).insert(aside);
+    fluid_stage::step(&mut app, 2);
+    let after = pixel(&mut app, MIDDLE);
+    assert!(after[1] < 100, "ink again: {after:?}");
 }
 
 #[test]
 fn stacked_cameras_of_other_samples_are_named() {
     fluid_stage::log::listen();
-    let before = fluid_stage::log::count("the two differ in `Msaa`");
+    let before = fluid_stage::log::count("differ in `Msaa`");
     let _app = stacked(Msaa::Off);
-    assert_eq!(
-        fluid_stage::log::count("the two differ in `Msaa`"),
-        before + 1
-    );
+    assert_eq!(fluid_stage::log::count("differ in `Msaa`"), before + 1);
 }
 
 #[test]

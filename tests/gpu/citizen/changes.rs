@@ -257,14 +257,28 @@ fn rain_stays_while_its_target_changes() {
     };
     let before = wet(&mut app);
     assert!(before > 3000, "{before}");
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        app.world_mut().entity_mut(camera).insert(msaa);
+    let changes: [fn(EntityWorldMut); 4] = [
+        |mut camera| {
+            camera.insert(Msaa::Off);
+        },
+        |mut camera| {
+            camera.insert(Msaa::Sample4);
+        },
+        |mut camera| {
+            camera.remove::<Hdr>();
+        },
+        |mut camera| {
+            camera.insert(Hdr);
+        },
+    ];
+    for (index, change) in changes.into_iter().enumerate() {
+        change(app.world_mut().entity_mut(camera));
         for frame in 0..4 {
             step(&mut app, 1);
             let now = wet(&mut app);
             assert!(
                 2 * now > before,
-                "{msaa:?}, frame {frame}: {now} of {before}"
+                "change {index}, frame {frame}: {now} of {before}"
             );
         }
     }

@@ -113,10 +113,10 @@ fn clear_water_in_fog_looks_as_what_is_behind_it() {
     );
 }
 
-/// Bright rain seen against black turns to the colour of a fog as dense as the rain is far.
+/// Bright rain, white by itself, has the colour of fog that is denser than it is near.
 #[test]
 fn rain_is_fogged() {
-    let green = |fogged: bool| {
+    let light = |fogged: bool| {
         let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
             let rain = Rain {
                 rate: 100.0,
@@ -132,21 +132,27 @@ fn rain_is_fogged() {
             if fogged {
                 let thick = FogFalloff::Exponential { density: 3.0 };
                 camera.insert(DistanceFog {
-                    color: Color::BLACK,
+                    color: Color::srgb(0.0, 0.0, 1.0),
                     falloff: thick,
                     ..default()
                 });
             }
         });
         let picture = capture(&mut app).unwrap();
-        let corner = (0..40).flat_map(|x| (0..30).map(move |y| (x, y)));
-        let sum: u32 = corner
-            .map(|(x, y)| u32::from(picture.get_pixel(x, y).0[1]))
-            .sum();
-        f64::from(sum) / 1200.0
+        let corner = || (0..40).flat_map(|x| (0..30).map(move |y| (x, y)));
+        [0, 2].map(|channel| {
+            let sum: u32 = corner()
+                .map(|(x, y)| u32::from(picture.get_pixel(x, y).0[channel]))
+                .sum();
+            f64::from(sum) / 1200.0
+        })
     };
-    let (clear, fogged) = (green(false), green(true));
-    assert!(clear > 5.0 && fogged < 0.5 * clear, "{clear} {fogged}");
+    let ([red, blue], [fogged_red, fogged_blue]) = (light(false), light(true));
+    assert!(red > 5.0 && blue < 2.0 * red, "{red} {blue}");
+    assert!(
+        fogged_blue > 5.0 && fogged_red < 0.2 * fogged_blue,
+        "{fogged_red} {fogged_blue}"
+    );
 }
 
 /// Kilometres away, where the air is blue: a black ball of liquid beside a black box.
