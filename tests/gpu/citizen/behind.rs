@@ -164,7 +164,7 @@ fn occlusion_culling_keeps_what_is_behind_clear_water() {
                 world.entity_mut(camera).insert(OcclusionCulling);
             }
             let red = unlit(Color::srgb(0.9, 0.1, 0.1));
-            paint(world, Vec3::splat(0.2), red, vec3(0.0, 0.0, -6.0));
+            paint(world, Vec3::splat(0.8), red, vec3(0.0, 0.0, -6.0));
         })
     });
     for i in 0..6 {
