@@ -19,7 +19,6 @@ mod tests;
 mod thickness;
 
 use bevy::{
-    camera::CameraUpdateSystems,
     core_pipeline::{
         Core3d, Core3dSystems,
         core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
@@ -96,10 +95,8 @@ impl Plugin for FluidRenderPlugin {
         refract::plugin(app);
         composite::plugin(app);
         debug_view::plugin(app);
-        app.add_systems(
-            PostUpdate,
-            stacked::share_targets.before(CameraUpdateSystems),
-        );
+        // After all that programs and Bevy do to cameras.
+        app.add_systems(Last, stacked::share_targets);
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
