@@ -7,6 +7,7 @@ use bevy::{
 
 use super::{
     Gpu, Target,
+    pipelines::TILE,
     support::{FluidSupport, LAYER_FORMAT},
     targets::ensure,
 };
@@ -25,8 +26,6 @@ pub(crate) const TRANSMISSION_FORMAT: TextureFormat = TextureFormat::Rg16Float;
 /// their slopes along x between the two halves of a separable fit, as bits of f32.
 pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
-/// Edge of a tile. Unit: pixels.
-pub(super) const TILE: u32 = 16;
 /// 1 where there is (bulk, spray).
 pub(super) const TILE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
 

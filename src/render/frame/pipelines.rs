@@ -13,7 +13,7 @@ use bevy::{
     shader::ShaderDefVal,
 };
 
-use super::{FrameLayout, layers::TILE};
+use super::FrameLayout;
 
 /// The tiles that a pass covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,7 +95,10 @@ pub(crate) fn one_texture_layout(label: &'static str) -> BindGroupLayoutDescript
     )
 }
 
-/// The edge of a tile, for shaders.
+/// Edge of a tile. Unit: pixels.
+pub(super) const TILE: u32 = 16;
+
+/// The same for shaders.
 pub(super) fn tile_size() -> ShaderDefVal {
     ShaderDefVal::Int("TILE".into(), TILE as i32)
 }

@@ -2,35 +2,8 @@
 
 use bevy::prelude::*;
 
-use super::{
-    SalvaSettings,
-    runner::Simulation,
-    world::{Command, Frame, Id},
-};
+use super::{SalvaSettings, runner::Simulation, world::Relocation};
 use crate::relocation::{Relocated, Teleports};
-
-/// A way that a job in flight does not know.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Relocation {
-    World(Vec3),
-    Fluid(Id, Isometry3d),
-}
-
-impl Relocation {
-    fn command(self) -> Command {
-        match self {
-            Self::World(by) => Command::Shift(by),
-            Self::Fluid(id, way) => Command::Carry(id, way),
-        }
-    }
-
-    pub(super) fn apply(self, frame: &mut Frame) {
-        match self {
-            Self::World(by) => frame.shift(by),
-            Self::Fluid(id, way) => frame.carry(id, &way),
-        }
-    }
-}
 
 impl Simulation {
     fn relocate(&mut self, relocation: Relocation) {

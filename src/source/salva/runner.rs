@@ -18,8 +18,7 @@ use super::{
     SalvaError, SalvaMode, SalvaSettings, SalvaStatus,
     gather::{FluidEntry, SolidEntry},
     pace::Pace,
-    relocate::Relocation,
-    world::{Command, Frame, Job, Report, World},
+    world::{Command, Frame, Job, Relocation, Report, World},
 };
 use crate::{relocation::SpeedLimit, settings::Checked};
 

@@ -9,6 +9,7 @@ mod frame;
 mod geometry;
 mod guard;
 mod liquid;
+mod relocation;
 mod sampling;
 mod solid;
 mod step;
@@ -24,6 +25,7 @@ pub(crate) use self::{
     frame::{Frame, blend},
     geometry::{Geometry, Recipe},
     liquid::{Limits, Newborn, Substance},
+    relocation::Relocation,
     sampling::Triangle,
     solid::{Contact, Motion, Traits},
 };
