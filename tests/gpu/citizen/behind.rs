@@ -186,16 +186,7 @@ fn occlusion_culling_keeps_what_is_behind_clear_water() {
 fn rain_behind_clear_water_is_seen_through_it() {
     let light = |rate: f32| {
         let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
-            let rain = Rain {
-                rate,
-                brightness: 30.0,
-                ..Rain::HEAVY
-            };
-            let ambient = AmbientLight {
-                brightness: 3000.0,
-                ..default()
-            };
-            world.entity_mut(camera).insert((rain, ambient));
+            world.entity_mut(camera).insert(bright_rain(rate));
         });
         let picture = capture(&mut app).unwrap();
         let ball = (60..100).flat_map(|x| (45..75).map(move |y| (x, y)));

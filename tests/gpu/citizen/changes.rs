@@ -237,16 +237,7 @@ fn rain_stays_while_its_target_changes() {
     let mut app = headless_app_in_background(SIZE, |app| {
         fill(app, Color::BLACK, FluidMaterial::INK, |world, it| {
             camera = it;
-            let rain = Rain {
-                rate: 100.0,
-                brightness: 30.0,
-                ..Rain::HEAVY
-            };
-            let ambient = AmbientLight {
-                brightness: 3000.0,
-                ..default()
-            };
-            world.entity_mut(camera).insert((rain, ambient));
+            world.entity_mut(camera).insert(bright_rain(100.0));
         });
     })
     .unwrap();

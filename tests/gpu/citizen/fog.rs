@@ -118,17 +118,8 @@ fn clear_water_in_fog_looks_as_what_is_behind_it() {
 fn rain_is_fogged() {
     let light = |fogged: bool| {
         let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, camera| {
-            let rain = Rain {
-                rate: 100.0,
-                brightness: 30.0,
-                ..Rain::HEAVY
-            };
-            let ambient = AmbientLight {
-                brightness: 3000.0,
-                ..default()
-            };
             let mut camera = world.entity_mut(camera);
-            camera.insert((rain, ambient));
+            camera.insert(bright_rain(100.0));
             if fogged {
                 let thick = FogFalloff::Exponential { density: 3.0 };
                 camera.insert(DistanceFog {

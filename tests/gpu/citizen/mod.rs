@@ -83,6 +83,20 @@ fn blended(color: Color) -> StandardMaterial {
     }
 }
 
+/// For a camera: rain that glows white.
+fn bright_rain(rate: f32) -> impl Bundle {
+    let rain = Rain {
+        rate,
+        brightness: 30.0,
+        ..Rain::HEAVY
+    };
+    let ambient = AmbientLight {
+        brightness: 3000.0,
+        ..default()
+    };
+    (rain, ambient)
+}
+
 /// Glass that bends nothing.
 fn glass() -> StandardMaterial {
     StandardMaterial {
