@@ -51,6 +51,11 @@ impl<I: SortedPhaseItem> Default for Taken<I> {
 trait Placed: SortedPhaseItem {
     /// z in view space.
     fn z(&self) -> f32;
+
+    /// Whether it only marks where a surface ends.
+    fn is_mark(&self) -> bool {
+        false
+    }
 }
 
 impl Placed for Transmissive3d {
@@ -62,6 +67,10 @@ impl Placed for Transmissive3d {
 impl Placed for Transparent3d {
     fn z(&self) -> f32 {
         self.distance
+    }
+
+    fn is_mark(&self) -> bool {
+        self.pipeline == CachedRenderPipelineId::INVALID
     }
 }
 
@@ -83,8 +92,10 @@ impl<I: Placed> Taken<I> {
                 painted.any(|of| (of.x..=of.y).contains(&depth))
             };
             let is_behind = |index: usize| {
-                let depth = phase.items.get_index(index).map(|(_, item)| -item.z());
-                depth.is_some_and(|depth| depth > depths.y && !is_among_painted(depth))
+                phase.items.get_index(index).is_some_and(|(_, item)| {
+                    let depth = -item.z();
+                    item.is_mark() || depth > depths.y && !is_among_painted(depth)
+                })
             };
             // A batch is drawn by its first item, and all at once.
             while let Some((_, item)) = phase.items.get_index(count) {

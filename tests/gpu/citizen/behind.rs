@@ -152,6 +152,23 @@ fn a_pane_within_a_farther_liquid_does_not_come_out_before_it() {
     assert!(differ(without, with) < 8, "{without:?} {with:?}");
 }
 
+/// A pane between two liquids is seen through the nearer one, and before the farther one.
+#[test]
+fn a_pane_between_two_liquids_is_seen_through_the_nearer_one() {
+    let middle = |pane: StandardMaterial| {
+        let mut app = scene(Color::BLACK, FluidMaterial::CLEAR_WATER, |world, _| {
+            world.spawn(drop_of(FluidMaterial::MILK, vec3(0.0, 0.0, -9.0)));
+            paint(world, vec3(4.0, 4.0, 0.02), pane, vec3(0.0, 0.0, -6.0));
+        });
+        pixel(&mut app, MIDDLE)
+    };
+    let green = Color::srgb(0.1, 0.9, 0.1);
+    let opaque = middle(unlit(green));
+    let blend = middle(blended(green.with_alpha(0.99)));
+    assert!(opaque[1] > 150 && opaque[0] < 150, "{opaque:?}");
+    assert!(differ(opaque, blend) < 16, "{opaque:?} {blend:?}");
+}
+
 /// The eye moves, so that what the last frame hid matters.
 #[test]
 fn occlusion_culling_keeps_what_is_behind_clear_water() {
