@@ -257,10 +257,12 @@ fn every_composite_is_made() {
     let keys = keys
         .into_iter()
         .flat_map(|((part, format), (samples, several))| {
-            BOTH.map(|atmosphere| CompositeKey {
+            let haze = [(false, false), (true, false), (true, true)];
+            haze.map(|(fog, atmosphere)| CompositeKey {
                 format,
                 samples,
                 part,
+                fog,
                 atmosphere,
                 several,
             })

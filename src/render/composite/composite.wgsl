@@ -211,13 +211,15 @@ fn light(pixel: vec2<f32>, texel: vec2<i32>, exit: vec4<u32>, front: f32) -> vec
     }
     let own = textureLoad(radiance, texel, 0).rgb;
     let transmitted = transmitted_at(texel);
+    var color = own + transmitted * behind.rgb;
+#ifdef HAZE
     // What is behind lies in haze as far as from the eye already, so that only the part of its light
     // that the liquid takes is replaced by that of the haze before the liquid.
     let is_outside = front < INSIDE_FRONT;
     let position = select(vec3(0.0), view_from_device(ndc_from_pixel(pixel), front), is_outside);
     let haze = haze_before(position, pixel / frame.view_size);
-    let color = own * haze.transmitted + haze.added * (1.0 - transmitted)
-        + transmitted * behind.rgb;
+    color = own * haze.transmitted + haze.added * (1.0 - transmitted) + transmitted * behind.rgb;
+#endif
     let taken = 1.0 - dot(transmitted, vec3(1.0 / 3.0));
     return vec4(color, mix(behind.a, 1.0, taken));
 }

@@ -26,7 +26,8 @@ pub(crate) struct CompositeKey {
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
     pub(crate) part: CompositePart,
-    /// Whether the view has an atmosphere.
+    /// Whether the view has fog, and an atmosphere.
+    pub(crate) fog: bool,
     pub(crate) atmosphere: bool,
     /// Whether there are other surfaces, which may be visible through this one.
     pub(crate) several: bool,
@@ -109,6 +110,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
         let shader_defs = defs([
             ("DEPTH_ALONE", !key.part.light()),
             ("SEVERAL", key.several),
+            ("HAZE", key.fog || key.atmosphere),
             ("ATMOSPHERE", key.atmosphere),
             ("DENSE", key.part == CompositePart::DenseDepth),
         ]);
@@ -147,6 +149,7 @@ impl Stage for CompositePipeline {
             format: variant.format,
             samples: variant.samples,
             part,
+            fog: variant.fog,
             atmosphere: variant.atmosphere,
             several: variant.several,
         };

@@ -4,7 +4,7 @@ use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::DepthPrepass,
     math::{Affine3A, Vec3A},
-    pbr::{GpuAtmosphereSettings, PrepassPipeline, resources::AtmosphereTextures},
+    pbr::{DistanceFog, GpuAtmosphereSettings, PrepassPipeline, resources::AtmosphereTextures},
     prelude::*,
     render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
 };
@@ -59,6 +59,7 @@ pub(super) fn prepare_surfaces(
         &FluidView,
         Option<&MainPassResolutionOverride>,
         Has<DepthPrepass>,
+        Has<DistanceFog>,
         Has<AtmosphereTextures>,
         // Of an atmosphere that has ended, only the textures stay.
         Has<GpuAtmosphereSettings>,
@@ -79,7 +80,9 @@ pub(super) fn prepare_surfaces(
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
     }
-    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, air, has_air) in &views {
+    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, fog, air, has_air) in
+        &views
+    {
         if camera.physical_target_size.is_none() {
             continue;
         }
@@ -170,6 +173,7 @@ pub(super) fn prepare_surfaces(
                 format: view.target_format,
                 samples: msaa.samples(),
                 scene_depth,
+                fog,
                 atmosphere: air && has_air,
                 several: scratch.groups.len() > 1,
             };

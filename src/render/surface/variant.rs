@@ -16,7 +16,8 @@ pub(crate) struct Variant {
     pub(crate) samples: u32,
     /// Whether the opaque scene's depth is known.
     pub(crate) scene_depth: bool,
-    /// Whether the view has an atmosphere.
+    /// Whether the view has fog, and an atmosphere.
+    pub(crate) fog: bool,
     pub(crate) atmosphere: bool,
     /// Whether there are other surfaces, which may be visible through this one.
     pub(crate) several: bool,
