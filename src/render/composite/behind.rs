@@ -119,11 +119,17 @@ impl<I: Placed> Taken<I> {
         }
     }
 
-    /// The items behind a surface that are not behind the one before.
+    /// The items behind a surface that are not behind the one before; none if all only mark ends.
     fn of(&self, surface: usize) -> core::ops::Range<usize> {
         let end = |index: usize| self.behind.get(index).copied().unwrap_or(0);
         let start = surface.checked_sub(1).map_or(0, end);
-        start..end(surface)
+        let range = start..end(surface);
+        let items = self.phase.items.get_range(range.clone());
+        if items.is_some_and(|items| items.values().any(|item| !item.is_mark())) {
+            range
+        } else {
+            start..start
+        }
     }
 }
 
@@ -159,6 +165,10 @@ pub(super) fn mark_ends(
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
             continue;
         };
+        // Without meshes there is nothing to keep apart, and no pass to draw.
+        if phase.items.is_empty() {
+            continue;
+        }
         for &entity in &surfaces_of.surfaces {
             let Ok(surface) = surfaces.get(entity) else {
                 continue;
