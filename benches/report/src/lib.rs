@@ -5,6 +5,7 @@
 //! against `fluid_reference`; times are GPU timestamps, the methods taking turns. [`run`] writes a
 //! table, plots and a summary.
 
+pub mod aliasing;
 mod error;
 mod front;
 mod media;
@@ -23,7 +24,10 @@ mod thesis;
 mod times;
 mod truth;
 
-use std::{fs, process::Command};
+use std::{
+    fs,
+    process::{Command, ExitCode},
+};
 
 use fluid_stage::adapter_name;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -38,6 +42,19 @@ use rig::Rig;
 use scenes::{Measures, Scene};
 use table::Subject;
 use truth::{Splats, Truth};
+
+/// The exit code of a program that has measured; what went wrong is printed.
+pub fn exit_code(done: Result<(), ReportError>) -> ExitCode {
+    let Err(error) = done else {
+        return ExitCode::SUCCESS;
+    };
+    if error.exit_code() == 0 {
+        print!("{error}");
+    } else {
+        eprintln!("{}", error.to_string().trim_end());
+    }
+    ExitCode::from(error.exit_code())
+}
 
 /// Measures what is asked for and writes the report.
 ///
@@ -84,6 +101,8 @@ pub fn run_apart(options: &Options) -> Result<(), ReportError> {
         if let Some(size) = options.size {
             part.args(["--size".into(), format!("{}x{}", size.x, size.y)]);
         }
+        part.args(["--jitters".into(), options.jitters.to_string()]);
+        part.args(options.still.then_some("--still"));
         let status = part.status().map_err(|error| failed(error.to_string()))?;
         if !status.success() {
             return Err(failed(format!("{name} ended with {status}")));
@@ -129,6 +148,7 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
         Measures::Times => (Vec::new(), methods::frames(true)),
         Measures::Windows => ([false, true].map(methods::table).concat(), Vec::new()),
         Measures::Thickness => (Vec::new(), methods::thicknesses()),
+        Measures::Edges => (Vec::new(), methods::frames(options.quick)),
     };
     let (smoothings, frames) = (wanted(smoothings), wanted(frames));
     let mut rig = Rig::new(scene)?;

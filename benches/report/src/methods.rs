@@ -74,6 +74,11 @@ pub(crate) fn smooths(name: &str) -> bool {
     .contains(&name)
 }
 
+/// The default, as a whole frame.
+pub(crate) fn default() -> Method {
+    Method::new(DEFAULT, "", ScreenSpaceFluid::DEFAULT)
+}
+
 /// The default's way to smooth.
 pub(crate) fn default_smoothing() -> Method {
     let default = PlaneFit::DEFAULT;
@@ -244,7 +249,7 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
         ..default
     };
     let mut methods = vec![
-        Method::new(DEFAULT, "", default),
+        self::default(),
         Method::new("fast", "", ScreenSpaceFluid::FAST),
         Method::new("accurate", "", ScreenSpaceFluid::ACCURATE),
         Method {

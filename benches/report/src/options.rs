@@ -9,7 +9,6 @@ use crate::{ReportError, methods, scenes};
 
 /// Runs every method with its parameters on every scene and reports speed against error.
 #[derive(Parser, Clone, Debug)]
-#[command(name = "speed_error")]
 pub struct Options {
     /// Small pictures and few methods: minutes instead of an hour
     #[arg(long)]
@@ -20,9 +19,15 @@ pub struct Options {
     /// Only methods of this name; may be given several times
     #[arg(long, value_name = "NAME")]
     pub method: Vec<String>,
-    /// Size of the two simulated scenes in pixels, as in 640x480
+    /// Size of simulated scenes and of those with many edges in pixels, as in 640x480
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<UVec2>,
+    /// Pictures whose mean is the truth about antialiasing: more for a truer one
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub jitters: u32,
+    /// No pictures from a moving camera, of which most are drawn
+    #[arg(long)]
+    pub still: bool,
     /// Where the table, the plots and the summary go
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

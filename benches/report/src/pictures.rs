@@ -172,7 +172,7 @@ pub(crate) fn ablate(
     truth: &TruePicture,
     rig: &mut Rig,
 ) -> Result<(), ReportError> {
-    let method = default();
+    let method = methods::default();
     rig.show(&method)?;
     let subject = |parameters| Subject {
         scene,
@@ -226,7 +226,7 @@ pub(crate) fn measure_furnace(
         rig.show(&Method {
             settings,
             material: FluidMaterial::CLEAR_WATER,
-            ..default()
+            ..methods::default()
         })?;
         let [radiance, transmission] = rig.light()?;
         let there = radiance.map(Option::is_some);
@@ -244,8 +244,4 @@ pub(crate) fn measure_furnace(
     }
     rig.heat(false);
     Ok(())
-}
-
-fn default() -> Method {
-    methods::frames(true).swap_remove(0)
 }

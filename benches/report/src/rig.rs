@@ -1,9 +1,9 @@
 //! An app that shows a scene, and what its GPU holds, as images in f64.
 
 use bevy::{
-    camera::Hdr,
+    camera::{Hdr, SubCameraView},
     core_pipeline::{Core3d, tonemapping::Tonemapping},
-    math::{DVec3, UVec2},
+    math::{DVec2, DVec3, UVec2},
     prelude::*,
     render::{
         RenderApp,
@@ -22,6 +22,7 @@ use bevy_fluid::{
 use fluid_reference::{
     Image, Lens, Span,
     mesh::{Layer, Sheet},
+    metrics::Front,
 };
 use fluid_stage::{TextureData, capture, headless_app, read_texture, settle, step};
 use half::f16;
@@ -57,7 +58,7 @@ impl Rig {
                 Msaa::Off,
                 Tonemapping::None,
                 projection(camera.lens),
-                Transform::from_matrix(Mat4::from(camera.world_from_view.as_affine3a())),
+                transform(&camera),
                 sky,
             ));
             let eye = eye.id();
@@ -99,6 +100,21 @@ impl Rig {
     pub(crate) fn show(&mut self, method: &Method) -> Result<(), ReportError> {
         self.choose(method);
         Ok(settle(&mut self.app)?)
+    }
+
+    /// Looks from another camera of the same size and lens, through places so many pixels off the
+    /// middles of its pixels, from the next frame on. What is measured in pixels stays as it is.
+    pub(crate) fn aim(&mut self, camera: &fluid_reference::Camera, off: DVec2) {
+        self.camera = *camera;
+        let mut eye = self.app.world_mut().entity_mut(self.eye);
+        eye.insert(transform(camera));
+        if let Some(mut eye) = eye.get_mut::<Camera>() {
+            eye.sub_camera_view = (off != DVec2::ZERO).then(|| SubCameraView {
+                full_size: camera.size,
+                offset: off.as_vec2(),
+                size: camera.size,
+            });
+        }
     }
 
     /// Draws once more.
@@ -194,6 +210,23 @@ impl Rig {
             bulk: layer(Layers::bulk, Layers::bulk_normals)?,
             spray: layer(Layers::spray, Layers::spray_normals)?,
         })
+    }
+
+    /// The nearest surface of each pixel's middle as the last frame left it.
+    pub(crate) fn fronts(&self) -> Result<Image<Option<Front>>, ReportError> {
+        let (size, camera) = (self.camera.size, &self.camera);
+        let [bulk, spray] = [self.read(Layers::bulk)?, self.read(Layers::spray)?];
+        let depth = |data: &Option<TextureData>, UVec2 { x, y }: UVec2| -> f32 {
+            data.as_ref().map_or(0.0, |data| data.f32x2(x, y)[0])
+        };
+        Ok(Image::from_fn(size, |pixel| {
+            let [bulk, spray] = [depth(&bulk, pixel), depth(&spray, pixel)];
+            let nearest = bulk.max(spray);
+            (nearest > 0.0).then(|| Front {
+                view_depth: camera.view_from_device(f64::from(nearest)),
+                droplet: spray > bulk,
+            })
+        }))
     }
 
     /// What is left of every pixel's ray.
@@ -317,6 +350,10 @@ fn image<T: Send>(
     value: impl Fn(&TextureData, UVec2) -> Option<T> + Sync,
 ) -> Image<Option<T>> {
     Image::from_fn(size, |pixel| value(data.as_ref()?, pixel))
+}
+
+fn transform(camera: &fluid_reference::Camera) -> Transform {
+    Transform::from_matrix(Mat4::from(camera.world_from_view.as_affine3a()))
 }
 
 fn projection(lens: Lens) -> Projection {

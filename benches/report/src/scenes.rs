@@ -1,4 +1,7 @@
-//! What is measured on: bodies whose surface is known, and the two scenes of the thesis.
+//! What is measured on: bodies whose surface is known, the two scenes of the thesis, and what has
+//! many edges.
+
+mod ragged;
 
 use std::{fs, path::PathBuf};
 
@@ -35,6 +38,8 @@ pub(crate) enum Measures {
     Windows,
     /// The way through a body that does not bend light.
     Thickness,
+    /// Antialiasing alone.
+    Edges,
 }
 
 /// A scene by name, not yet made.
@@ -55,7 +60,7 @@ const fn entry(
 /// Particle radius of bodies that fill the picture, m.
 const RADIUS: f64 = 0.025;
 
-const ENTRIES: [Entry; 31] = [
+const ENTRIES: [Entry; 51] = [
     entry("slab", false, |o, n| {
         Ok(body(o, n, scene::slab(RADIUS, 30.0)))
     }),
@@ -130,6 +135,26 @@ const ENTRIES: [Entry; 31] = [
     entry("step-1024x768", false, |o, n| {
         larger(o, n, dvec3(1.4, 2.2, 5.2), dvec3(0.2, 0.7, 0.0))
     }),
+    entry("pool", false, |o, n| Ok(ragged::pool(o, n))),
+    entry("cloud", false, |o, n| Ok(ragged::cloud(o, n))),
+    entry("sprayed-wall", false, |o, n| Ok(ragged::sprayed_wall(o, n))),
+    entry("knot", false, |o, n| Ok(ragged::knot(o, n))),
+    entry("cube-top", false, |o, n| Ok(ragged::cube_top(o, n))),
+    entry("wave-at-0.5px", false, |o, n| wave_at(o, n, 0.5)),
+    entry("wave-at-0.9px", false, |o, n| wave_at(o, n, 0.9)),
+    entry("wave-at-1px", false, |o, n| wave_at(o, n, 1.0)),
+    entry("wave-at-1.8px", false, |o, n| wave_at(o, n, 1.8)),
+    entry("wave-at-2px", false, |o, n| wave_at(o, n, 2.0)),
+    entry("wave-at-3.7px", false, |o, n| wave_at(o, n, 3.7)),
+    entry("wave-at-4px", false, |o, n| wave_at(o, n, 4.0)),
+    entry("pool-at-0.5px", false, |o, n| Ok(pool_at(o, n, 0.5))),
+    entry("pool-at-1px", false, |o, n| Ok(pool_at(o, n, 1.0))),
+    entry("pool-at-2px", false, |o, n| Ok(pool_at(o, n, 2.0))),
+    entry("pool-at-4px", false, |o, n| Ok(pool_at(o, n, 4.0))),
+    entry("cloud-at-0.5px", false, |o, n| Ok(cloud_at(o, n, 0.5))),
+    entry("cloud-at-1px", false, |o, n| Ok(cloud_at(o, n, 1.0))),
+    entry("cloud-at-2px", false, |o, n| Ok(cloud_at(o, n, 2.0))),
+    entry("cloud-at-4px", false, |o, n| Ok(cloud_at(o, n, 4.0))),
 ];
 
 /// What scenes are called.
@@ -150,6 +175,20 @@ pub(crate) fn asked(options: &Options) -> Vec<&'static str> {
         .map(|entry| entry.name)
         .collect()
 }
+
+/// Those that show what antialiasing does, where none is asked for.
+pub(crate) const WITH_EDGES: [&str; 10] = [
+    "wave",
+    "step",
+    "wave-at-0.9px",
+    "wave-at-1.8px",
+    "wave-at-3.7px",
+    "pool",
+    "cloud",
+    "sprayed-wall",
+    "knot",
+    "cube-top",
+];
 
 /// Makes a scene; `None` if there is none of this name.
 pub(crate) fn make(options: &Options, name: &str) -> Option<Result<Scene, ReportError>> {
@@ -248,6 +287,29 @@ fn larger(
     Ok(scene)
 }
 
+/// The dam break from afar, so many pixels for a particle's radius.
+fn wave_at(options: &Options, name: &'static str, pixels: f64) -> Result<Scene, ReportError> {
+    let near = simulated(options, name, dvec3(1.6, 2.6, 6.2), dvec3(0.3, 0.8, 0.0))?;
+    Ok(ragged::from_afar(near, pixels))
+}
+
+fn pool_at(options: &Options, name: &'static str, pixels: f64) -> Scene {
+    ragged::from_afar(ragged::pool(options, name), pixels)
+}
+
+fn cloud_at(options: &Options, name: &'static str, pixels: f64) -> Scene {
+    ragged::from_afar(ragged::cloud(options, name), pixels)
+}
+
+/// The size of pictures of scenes that look well in any.
+fn size(options: &Options) -> UVec2 {
+    options.size.unwrap_or(if options.quick {
+        uvec2(160, 120)
+    } else {
+        uvec2(640, 480)
+    })
+}
+
 /// A frame that the example `bake` has kept, by the first word of the scene's name.
 fn simulated(
     options: &Options,
@@ -268,16 +330,11 @@ fn simulated(
         fov: 35_f64.to_radians(),
         near: 0.1,
     };
-    let size = options.size.unwrap_or(if options.quick {
-        uvec2(160, 120)
-    } else {
-        uvec2(640, 480)
-    });
     Ok(Scene {
         name,
         positions: triples.iter().map(|&p| Vec3::from(p)).collect(),
         radius: RADIUS,
-        camera: Camera::new(size, lens).looking_at(eye, target),
+        camera: Camera::new(size(options), lens).looking_at(eye, target),
         around: Surroundings {
             floor: -0.4,
             wall: -2.5,

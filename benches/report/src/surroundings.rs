@@ -12,6 +12,7 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use fluid_reference::{
+    metrics::{decode_srgb, encode_srgb},
     surface::Cuboid,
     tracer::{Object, checker},
 };
@@ -122,42 +123,59 @@ pub(crate) fn sky(direction: DVec3) -> DVec3 {
 
 /// From sRGB bytes.
 fn linear(bytes: [u8; 3]) -> DVec3 {
-    let [r, g, b] = bytes.map(|byte| {
-        let c = f64::from(byte) / 255.0;
-        if c <= 0.040_45 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        }
-    });
-    dvec3(r, g, b)
+    decode_srgb(DVec3::from(bytes.map(f64::from)) / 255.0)
 }
 
-/// Two by two squares, to be repeated; as sharp as the tracer's.
+/// Two by two squares, to be repeated, with their means for pixels that hold more than a texel: the
+/// surroundings have no stairs of their own.
 fn squares() -> Image {
-    let texels = [LIGHT, DARK, DARK, LIGHT];
-    let data: Vec<u8> = texels
-        .iter()
-        .flat_map(|&[r, g, b]| [r, g, b, 255])
+    let levels = SQUARES_SIDE.ilog2() + 1;
+    let data: Vec<u8> = (0..levels)
+        .flat_map(|level| squares_level(SQUARES_SIDE >> level))
+        .flat_map(|[r, g, b]| [r, g, b, 255])
         .collect();
-    let size = Extent3d {
-        width: 2,
-        height: 2,
+    let mut image = Image {
+        data: Some(data),
+        asset_usage: RenderAssetUsages::RENDER_WORLD,
+        ..default()
+    };
+    image.texture_descriptor.size = Extent3d {
+        width: SQUARES_SIDE,
+        height: SQUARES_SIDE,
         depth_or_array_layers: 1,
     };
-    let mut image = Image::new(
-        size,
-        TextureDimension::D2,
-        data,
-        TextureFormat::Rgba8UnormSrgb,
-        RenderAssetUsages::RENDER_WORLD,
-    );
+    image.texture_descriptor.dimension = TextureDimension::D2;
+    image.texture_descriptor.format = TextureFormat::Rgba8UnormSrgb;
+    image.texture_descriptor.mip_level_count = levels;
     image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
         address_mode_u: ImageAddressMode::Repeat,
         address_mode_v: ImageAddressMode::Repeat,
-        ..ImageSamplerDescriptor::nearest()
+        anisotropy_clamp: 8,
+        ..ImageSamplerDescriptor::linear()
     });
     image
+}
+
+/// So many texels along two squares: of less than a millimetre, smaller than any scene's pixel.
+const SQUARES_SIDE: u32 = 1024;
+
+/// Texels of a mip level, row by row.
+fn squares_level(side: u32) -> Vec<[u8; 3]> {
+    if side == 1 {
+        let mean = encode_srgb(0.5 * (linear(LIGHT) + linear(DARK)));
+        return vec![mean.to_array().map(|c| (255.0 * c).round() as u8)];
+    }
+    let is_second = |x: u32| 2 * x >= side;
+    let texel = |x, y| {
+        if is_second(x) == is_second(y) {
+            LIGHT
+        } else {
+            DARK
+        }
+    };
+    (0..side)
+        .flat_map(|y| (0..side).map(move |x| texel(x, y)))
+        .collect()
 }
 
 /// A parallelogram, seen from both sides by its order of corners.

@@ -4,6 +4,8 @@
 //! all of them. A value that is not a number is an error that names the metric: it never
 //! disappears in a mean.
 
+mod aliasing;
+mod edges;
 mod filter;
 mod flip;
 mod geometry;
@@ -17,11 +19,13 @@ use thiserror::Error;
 
 use crate::Image;
 
+pub use aliasing::{mean_difference, share_off, sharpness};
+pub use edges::{Edges, Front};
 pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use geometry::{
     DepthError, depth_error, direction_error, furnace_error, normal_error, silhouette_iou,
 };
-pub use pictures::{encode_srgb, mean, psnr, ssim};
+pub use pictures::{decode_srgb, encode_srgb, mean, psnr, ssim};
 pub use quantiles::Quantiles;
 pub use regions::Regions;
 pub use search::{Search, SearchReport, Status, search_report};

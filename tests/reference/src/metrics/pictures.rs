@@ -21,6 +21,17 @@ pub fn encode_srgb(linear: DVec3) -> DVec3 {
     })
 }
 
+/// The inverse of [`encode_srgb`].
+pub fn decode_srgb(encoded: DVec3) -> DVec3 {
+    encoded.map(|c| {
+        if c <= 0.040_45 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
 /// Mean of a map over the pixels that count.
 ///
 /// # Errors

@@ -1,11 +1,9 @@
 //! Pictures, and how exact they are.
 
-use std::f64::consts::GOLDEN_RATIO;
-
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::Tracer;
-use crate::{Camera, Image};
+use crate::{Camera, Image, pixel_samples};
 
 /// A picture that knows its error.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,21 +18,16 @@ pub struct Picture {
 }
 
 impl Tracer<'_> {
-    /// Linear radiance, the mean of `side`² samples of each pixel on a lattice turned by the golden
-    /// ratio, in which no row or column holds two: edges of any slope converge alike.
+    /// Linear radiance, the mean of `side`² samples of each pixel ([`pixel_samples`]).
     ///
     /// One sample is exact for the middle of each pixel: what to compare a renderer without
     /// antialiasing with.
     pub fn render(&self, camera: &Camera, side: u32) -> Image<DVec3> {
         let count = f64::from(side * side);
         Image::from_fn(camera.size, |pixel| {
-            let sample = |i: u32| {
-                let i = f64::from(i);
-                let within =
-                    DVec2::new((i + 0.5) / count, (0.5 + i * (GOLDEN_RATIO - 1.0)).fract());
-                self.radiance(camera.ray(pixel.as_dvec2() + within))
-            };
-            (0..side * side).map(sample).sum::<DVec3>() / count
+            let samples = pixel_samples(side * side);
+            let sample = |within| self.radiance(camera.ray(pixel.as_dvec2() + within));
+            samples.map(sample).sum::<DVec3>() / count
         })
     }
 
