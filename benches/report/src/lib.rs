@@ -36,6 +36,7 @@ pub use error::ReportError;
 pub use options::Options;
 pub use table::{Row, Table};
 
+use aliasing::Aliasing;
 use methods::Method;
 use pictures::TruePicture;
 use rig::Rig;
@@ -101,8 +102,11 @@ pub fn run_apart(options: &Options) -> Result<(), ReportError> {
         if let Some(size) = options.size {
             part.args(["--size".into(), format!("{}x{}", size.x, size.y)]);
         }
-        part.args(["--jitters".into(), options.jitters.to_string()]);
         part.args(options.still.then_some("--still"));
+        if let Some(jitters) = options.jitters {
+            part.args(["--jitters".into(), jitters.to_string()]);
+        }
+        part.arg("--pictures").arg(options.pictures());
         let status = part.status().map_err(|error| failed(error.to_string()))?;
         if !status.success() {
             return Err(failed(format!("{name} ended with {status}")));
@@ -148,7 +152,7 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
         Measures::Times => (Vec::new(), methods::frames(true)),
         Measures::Windows => ([false, true].map(methods::table).concat(), Vec::new()),
         Measures::Thickness => (Vec::new(), methods::thicknesses()),
-        Measures::Edges => (Vec::new(), methods::frames(options.quick)),
+        Measures::Edges => (Vec::new(), methods::frames(true)),
     };
     let (smoothings, frames) = (wanted(smoothings), wanted(frames));
     let mut rig = Rig::new(scene)?;
@@ -161,6 +165,9 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
             options,
             &progress,
         )?;
+    }
+    if scene.measures == Measures::Edges {
+        return edges(table, scene, &frames, &mut rig, options, &progress);
     }
     if scene.measures == Measures::Thickness {
         media::measure_closed_form(table, scene);
@@ -179,6 +186,62 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
     Ok(())
 }
 
+/// How a method antialiases: at rest, and for presets in motion too, where ten times as many
+/// pictures are drawn.
+fn antialiasing(
+    table: &mut Table,
+    scene: &Scene,
+    method: &Method,
+    rig: &mut Rig,
+    options: &Options,
+) -> Result<Aliasing, ReportError> {
+    let is_default = method.name == methods::DEFAULT;
+    let moves = is_default || (!options.quick && methods::PRESETS.contains(&method.name));
+    let aliasing = aliasing::measure(scene, method, rig, options, moves && !options.still)?;
+    if is_default {
+        aliasing.draw(scene, method, options.pictures())?;
+    }
+    let subject = Subject {
+        scene,
+        method: method.name,
+        parameters: &method.parameters,
+    };
+    aliasing.write(table, subject);
+    Ok(aliasing)
+}
+
+/// What antialiasing does, and pictures where their truth is known.
+fn edges(
+    table: &mut Table,
+    scene: &Scene,
+    frames: &[Method],
+    rig: &mut Rig,
+    options: &Options,
+    progress: &ProgressBar,
+) -> Result<(), ReportError> {
+    progress.set_message("errors");
+    progress.set_length(frames.len() as u64);
+    let mut picture = None;
+    for method in frames {
+        let subject = Subject {
+            scene,
+            method: method.name,
+            parameters: &method.parameters,
+        };
+        let aliasing = antialiasing(table, scene, method, rig, options)?;
+        if let Some(exact) = scene.exact.as_deref() {
+            let truth = picture.get_or_insert_with(|| {
+                // The first method's parts of the picture for all.
+                TruePicture::of(scene, &Truth::Exact(exact), aliasing.edges.named().to_vec())
+            });
+            pictures::measure(table, subject, truth, &aliasing.picture)?;
+        }
+        progress.inc(1);
+    }
+    progress.finish_with_message("done");
+    Ok(())
+}
+
 /// Everything but the times.
 fn errors(
     table: &mut Table,
@@ -191,7 +254,8 @@ fn errors(
     progress.set_message("truth");
     let splats = Splats::of(scene)?;
     let truth = Truth::of(scene, &splats);
-    rig.show(&methods::smoothings(true)[0])?;
+    let few = methods::smoothings(true);
+    rig.show(&few[0])?;
     surfaces::measure_layers(table, scene, &splats, rig)?;
     let regions = surfaces::regions(scene, &truth, &rig.seen()?.bulk);
 
@@ -200,12 +264,16 @@ fn errors(
     for method in smoothings {
         rig.show(method)?;
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
+        // Of the grids of parameters it would take too long.
+        if few.iter().any(|few| few.label() == method.label()) {
+            antialiasing(table, scene, method, rig, options)?;
+        }
         progress.inc(1);
     }
     if frames.is_empty() {
         return Ok(());
     }
-    let picture = TruePicture::of(scene, &truth, &regions);
+    let picture = TruePicture::of(scene, &truth, surfaces::named(&regions).to_vec());
     let model = TruePicture::of_model(scene, &picture);
     for method in frames {
         rig.show(method)?;
@@ -219,6 +287,7 @@ fn errors(
             pictures::measure(table, subject, truth, &got)?;
         }
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
+        antialiasing(table, scene, method, rig, options)?;
         progress.inc(1);
     }
     pictures::ablate(table, scene, &picture, rig)?;

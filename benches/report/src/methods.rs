@@ -59,6 +59,9 @@ pub(crate) const THESIS: &str = "thesis";
 pub(crate) const EARLIER: &str = "thesis-earlier";
 pub(crate) const THICKNESS: &str = "thickness";
 
+/// The frames that are presets.
+pub(crate) const PRESETS: [&str; 5] = [DEFAULT, "fast", "accurate", THESIS, EARLIER];
+
 /// Whether a method of this name is a way to smooth, and not a whole frame.
 pub(crate) fn smooths(name: &str) -> bool {
     [

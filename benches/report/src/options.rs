@@ -1,6 +1,10 @@
 //! What is asked for on the command line.
 
-use std::{ffi::OsString, fs, path::PathBuf};
+use std::{
+    ffi::OsString,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use bevy::math::UVec2;
 use clap::Parser;
@@ -22,15 +26,18 @@ pub struct Options {
     /// Size of simulated scenes and of those with many edges in pixels, as in 640x480
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<UVec2>,
-    /// Pictures whose mean is the truth about antialiasing: more for a truer one
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub jitters: u32,
+    /// Pictures whose mean is the truth about antialiasing, 64 or, if quick, 16
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub jitters: Option<u32>,
     /// No pictures from a moving camera, of which most are drawn
     #[arg(long)]
     pub still: bool,
     /// Where the table, the plots and the summary go
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Where pictures of errors go, if not beside the table
+    #[arg(long, value_name = "DIR", hide = true)]
+    pictures: Option<PathBuf>,
     /// Only the table: what `run_apart` asks of the process of a scene
     #[arg(long, hide = true)]
     pub(crate) table_only: bool,
@@ -74,6 +81,16 @@ impl Options {
             path: self.out.clone(),
             source,
         })
+    }
+
+    /// Pictures whose mean is the truth about antialiasing.
+    pub(crate) fn jitters(&self) -> u32 {
+        self.jitters.unwrap_or(if self.quick { 16 } else { 64 })
+    }
+
+    /// Where pictures of errors go.
+    pub(crate) fn pictures(&self) -> &Path {
+        self.pictures.as_ref().unwrap_or(&self.out)
     }
 
     pub(crate) fn wants_scene(&self, name: &str) -> bool {

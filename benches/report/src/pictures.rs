@@ -8,7 +8,7 @@ use bevy_fluid::{
 use fluid_reference::{
     Image, Surface,
     mesh::LayerMeshes,
-    metrics::{PIXELS_PER_DEGREE, Regions, encode_srgb, flip, furnace_error, mean, psnr, ssim},
+    metrics::{PIXELS_PER_DEGREE, encode_srgb, flip, furnace_error, mean, psnr, ssim},
     tracer::{Object, Tracer, World},
 };
 
@@ -17,7 +17,7 @@ use crate::{
     methods::{self, Method},
     rig::{Rig, Seen},
     scenes::Scene,
-    surfaces::{metric, named},
+    surfaces::metric,
     surroundings::sky,
     table::{Subject, Table},
     truth::{Truth, water},
@@ -32,6 +32,11 @@ pub(crate) struct TruePicture {
     regions: Vec<(&'static str, Image<bool>)>,
     names: Names,
 }
+
+/// The root of the number of rays through each pixel of a true picture.
+const RAYS: u32 = 8;
+/// The same where the surface is implicit: a hundred times as slow.
+const IMPLICIT_RAYS: u32 = 2;
 
 /// What the table calls errors from a picture.
 #[derive(Clone, Copy)]
@@ -59,13 +64,16 @@ const MODEL: Names = Names {
 };
 
 impl TruePicture {
-    /// Every reflection and refraction at the true surface, exact for the middle of each pixel, as
-    /// the renderer has no antialiasing of its own.
-    pub(crate) fn of(scene: &Scene, truth: &Truth, regions: &Regions) -> Self {
+    /// Every reflection and refraction at the true surface, the mean over each pixel: what one ray
+    /// through its middle sees would punish an edge without stairs.
+    pub(crate) fn of(
+        scene: &Scene,
+        truth: &Truth,
+        mut regions: Vec<(&'static str, Image<bool>)>,
+    ) -> Self {
         let objects = scene.around.objects();
         let tracer = Tracer::truth(world(truth.surface(), &objects), water());
         let whole = matches!(truth, Truth::Exact(_));
-        let mut regions = named(regions).to_vec();
         let all = regions[0].1.clone();
         if whole {
             let tracer = Tracer {
@@ -76,9 +84,10 @@ impl TruePicture {
             let deep = Image::from_fn(scene.camera.size, |pixel| *all.get(pixel) && is_deep(pixel));
             regions.push(("deep", deep));
         }
+        let side = if whole { RAYS } else { IMPLICIT_RAYS };
         let image = Image::from_fn(scene.camera.size, |pixel| {
             if whole || *all.get(pixel) {
-                encode_srgb(tracer.radiance(scene.camera.pixel_ray(pixel)))
+                encode_srgb(tracer.pixel(&scene.camera, pixel, side))
             } else {
                 DVec3::ZERO
             }
@@ -98,7 +107,7 @@ impl TruePicture {
         let objects = scene.around.objects();
         let tracer = Tracer::renderer(world(exact, &objects), water());
         Some(Self {
-            image: tracer.render(&scene.camera, 1).map(|c| encode_srgb(*c)),
+            image: tracer.render(&scene.camera, RAYS).map(|c| encode_srgb(*c)),
             whole: true,
             regions: of.regions.clone(),
             names: MODEL,
@@ -162,7 +171,7 @@ pub(crate) fn through_layers(scene: &Scene, seen: &Seen, method: &Method) -> Ima
         each_body_once: true,
         ..Tracer::renderer(world(&meshes, &objects), water())
     };
-    tracer.render(&scene.camera, 1).map(|c| encode_srgb(*c))
+    tracer.render(&scene.camera, RAYS).map(|c| encode_srgb(*c))
 }
 
 /// Which part of the picture's error comes from the layers and which from the search.

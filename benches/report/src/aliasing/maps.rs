@@ -6,7 +6,6 @@ use bevy::math::{DVec3, IVec2, UVec2, ivec2, uvec2};
 use fluid_reference::{Image, metrics::Edges};
 use image::{Rgb, RgbImage, imageops};
 
-use super::truth::Picture;
 use crate::{ReportError, methods::Method, scenes::Scene};
 
 /// What is shown of an edge, pixels.
@@ -18,15 +17,15 @@ const ENLARGED: u32 = 4;
 pub(super) fn write(
     scene: &Scene,
     method: &Method,
-    (picture, truth): (&Picture, &Picture),
+    (picture, truth): (&Image<DVec3>, &Image<DVec3>),
     edges: &Edges,
-    out: &Path,
+    folder: &Path,
 ) -> Result<(), ReportError> {
     let parameters = method.parameters.replace([' ', '.', ','], "-");
     let stem = format!("{}_{}{parameters}", scene.name, method.name);
     let three = [drawn(picture), drawn(truth), map(picture, truth)];
     for (image, what) in three.iter().zip(["picture", "truth", "map"]) {
-        save(image, &out.join(format!("{stem}_{what}.png")))?;
+        save(image, &folder.join(format!("{stem}_{what}.png")))?;
     }
     let corners = [&edges.outer, &edges.inner, &edges.inside].map(|mask| fullest(mask, truth));
     let crop = CROP.min(truth.size());
@@ -40,10 +39,10 @@ pub(super) fn write(
             imageops::replace(&mut sheet, &large, i64::from(x), i64::from(y));
         }
     }
-    save(&sheet, &out.join(format!("{stem}_crops.png")))
+    save(&sheet, &folder.join(format!("{stem}_crops.png")))
 }
 
-fn drawn(picture: &Picture) -> RgbImage {
+fn drawn(picture: &Image<DVec3>) -> RgbImage {
     let size = picture.size();
     RgbImage::from_fn(size.x, size.y, |x, y| {
         let color = *picture.get(uvec2(x, y)) * 255.0;
@@ -53,7 +52,7 @@ fn drawn(picture: &Picture) -> RgbImage {
 
 /// Grey for no error; lighter where the picture is too light, darker where it is too dark. An error
 /// of 0.25 is white or black.
-fn map(picture: &Picture, truth: &Picture) -> RgbImage {
+fn map(picture: &Image<DVec3>, truth: &Image<DVec3>) -> RgbImage {
     let size = picture.size();
     RgbImage::from_fn(size.x, size.y, |x, y| {
         let error = *picture.get(uvec2(x, y)) - *truth.get(uvec2(x, y));
@@ -64,7 +63,7 @@ fn map(picture: &Picture, truth: &Picture) -> RgbImage {
 
 /// The corner of the crop in which most counts of a mask: where the truth has most contrast. It
 /// depends on the truth alone, so that pictures of other methods show the same.
-fn fullest(mask: &Image<bool>, truth: &Picture) -> UVec2 {
+fn fullest(mask: &Image<bool>, truth: &Image<DVec3>) -> UVec2 {
     let size = truth.size();
     let contrast = Image::from_fn(size, |pixel| {
         let next = (pixel + 1).min(size - 1);

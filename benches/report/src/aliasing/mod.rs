@@ -1,15 +1,21 @@
 //! Antialiasing: how far a picture is from the mean over its pixels, at rest and in motion.
 //!
 //! The truth about a drawn picture is the mean of many of the same size, each seen through other
-//! places of its pixels ([`truth`]). All that is measured in pixels, windows and radii, stays as it
-//! is, so that nothing but antialiasing differs: what is measured is the method against itself.
+//! places of its pixels. All that is measured in pixels, windows and radii, stays as it is, so that
+//! nothing but antialiasing differs: what is measured is the method against itself.
 
+mod lines;
 mod maps;
 mod motion;
+#[cfg(test)]
+mod tests;
 mod truth;
 
-use bevy::math::DVec2;
-use fluid_reference::metrics::{Edges, MetricError, mean_difference, psnr, share_off, sharpness};
+use bevy::math::{DVec2, DVec3};
+use fluid_reference::{
+    Image,
+    metrics::{Edges, MetricError, mean_difference, psnr, share_off, sharpness},
+};
 
 use crate::{
     Options, ReportError,
@@ -17,10 +23,10 @@ use crate::{
     rig::Rig,
     scenes::{self, Scene},
     surfaces::metric,
-    table::Subject,
+    table::{Subject, Table},
 };
 use motion::{Motion, Path};
-use truth::{Supersampled, supersample, unfiltered};
+use truth::{supersample, unfiltered};
 
 /// Difference of some channel (sRGB, 0 to 1) from which on a pixel is off.
 const OFF: f64 = 0.2;
@@ -29,20 +35,25 @@ const STEP: f64 = 2.0;
 
 /// A method's picture against its own truth.
 pub(crate) struct Aliasing {
-    /// Values by region: `outer`, `inner`, `inside`, `beside`, `all` (all but the last but one).
-    pub(crate) regions: Vec<(&'static str, Errors)>,
+    /// sRGB-encoded.
+    pub(crate) picture: Image<DVec3>,
+    truth: Image<DVec3>,
+    /// The parts of the picture.
+    pub(crate) edges: Edges,
+    /// Errors of each part, and of what is `beside` the liquid: of those that have pixels.
+    errors: Vec<(&'static str, Errors)>,
     /// Gradient energy inside the liquid over the truth's; `None` where nothing is inside.
-    pub(crate) sharpness: Option<f64>,
-    /// By how the camera moves; none if it is to stay still.
-    pub(crate) motions: Vec<(Path, Motion)>,
+    sharpness: Option<f64>,
+    /// By how the camera moves; none if it stays still.
+    motions: Vec<(Path, Motion)>,
 }
 
 /// In sRGB values of 0 to 1.
-pub(crate) struct Errors {
-    pub(crate) rmse: f64,
-    pub(crate) mean: f64,
+struct Errors {
+    rmse: f64,
+    mean: f64,
     /// Share of pixels of which some channel is off by more than [`OFF`].
-    pub(crate) off: f64,
+    off: f64,
 }
 
 /// Prints a line for each scene and method, and writes their pictures.
@@ -63,112 +74,85 @@ pub fn run(options: &Options) -> Result<(), ReportError> {
         all.retain(|method| options.wants_method(method.name));
         all
     };
-    println!("{}", heading());
-    for scene in names
-        .into_iter()
-        .filter_map(|name| scenes::make(options, name))
-    {
-        let scene = scene?;
+    println!("{}", lines::HEADING);
+    for name in names {
+        let Some(scene) = scenes::make(options, name).transpose()? else {
+            continue;
+        };
         let mut rig = Rig::new(&scene)?;
         for method in &methods {
-            let aliasing = measure(&scene, method, &mut rig, options)?;
-            println!("{}", line(&scene, method, &aliasing));
+            let aliasing = measure(&scene, method, &mut rig, options, !options.still)?;
+            aliasing.draw(&scene, method, &options.out)?;
+            println!("{}", lines::line(&scene, method, &aliasing));
         }
     }
     Ok(())
 }
 
-/// Measures a method on a scene and writes its pictures.
+/// Measures a method on a scene; in motion too, where most are drawn, if
+/// that is wanted.
 pub(crate) fn measure(
     scene: &Scene,
     method: &Method,
     rig: &mut Rig,
     options: &Options,
+    in_motion: bool,
 ) -> Result<Aliasing, ReportError> {
-    let wrong = |source| {
-        let (method, parameters) = (method.name, method.parameters.as_str());
-        metric(
-            Subject {
-                scene,
-                method,
-                parameters,
-            },
-            source,
-        )
+    let subject = Subject {
+        scene,
+        method: method.name,
+        parameters: &method.parameters,
     };
+    let wrong = |source| metric(subject, source);
+
     rig.show(&unfiltered(method))?;
-    let truth = supersample(rig, &scene.camera, options.jitters)?;
+    let truth = supersample(rig, &scene.camera, options.jitters())?;
     rig.aim(&scene.camera, DVec2::ZERO);
     rig.frame();
     let fronts = rig.fronts()?;
     let edges = Edges::new(&truth.coverage, &fronts, STEP * scene.radius);
-    let paths = if options.still { &[][..] } else { &Path::ALL };
-    let distance = motion::distance(scene, &fronts);
-    let moving: Vec<_> = paths
+    let paths = if in_motion { &Path::ALL[..] } else { &[] };
+    let distance = motion::distance(&scene.camera, &fronts);
+    let walks = paths
         .iter()
-        .map(|&path| {
-            let jitters = options.jitters.min(motion::JITTERS);
-            let cameras = path.cameras(&scene.camera, distance);
-            let truths = supersampled(rig, &cameras, jitters)?;
-            Ok((path, cameras, truths))
-        })
-        .collect::<Result<_, ReportError>>()?;
+        .map(|path| path.walk(rig, &scene.camera, distance, options))
+        .collect::<Result<Vec<_>, _>>()?;
 
     rig.aim(&scene.camera, DVec2::ZERO);
     rig.show(method)?;
     let picture = rig.picture()?;
-    maps::write(
-        scene,
-        method,
-        (&picture, &truth.image),
-        &edges,
-        &options.out,
-    )?;
-    let motions = moving
-        .into_iter()
-        .map(|(path, cameras, truths)| {
-            let motion = motion::measure(rig, &cameras, &truths, wrong)?;
-            Ok((path, motion))
-        })
+    let motions = walks
+        .iter()
+        .map(|walk| Ok((walk.path, motion::measure(rig, walk, wrong)?)))
         .collect::<Result<_, ReportError>>()?;
     rig.aim(&scene.camera, DVec2::ZERO);
+    rig.frame();
 
-    let all = edges.liquid();
-    let mut regions = Vec::new();
-    for (region, mask) in [
-        ("outer", &edges.outer),
-        ("inner", &edges.inner),
-        ("inside", &edges.inside),
-        ("beside", &edges.beside),
-        ("all", &all),
-    ] {
-        if mask.pixels().contains(&true) {
-            let errors = errors(&picture, &truth, mask).map_err(wrong)?;
-            regions.push((region, errors));
-        }
-    }
+    let errors = edges
+        .named()
+        .iter()
+        .map(|(name, mask)| (*name, mask))
+        .chain([("beside", &edges.beside)])
+        .filter(|(_, mask)| mask.pixels().contains(&true))
+        .map(|(name, mask)| Ok((name, errors(&picture, &truth.image, mask)?)))
+        .collect::<Result<_, _>>()
+        .map_err(wrong)?;
     Ok(Aliasing {
-        regions,
+        errors,
         sharpness: sharpness(&picture, &truth.image, Some(&edges.inside)).ok(),
         motions,
+        edges,
+        truth: truth.image,
+        picture,
     })
 }
 
-fn supersampled(
-    rig: &mut Rig,
-    cameras: &[fluid_reference::Camera],
-    jitters: u32,
-) -> Result<Vec<Supersampled>, ReportError> {
-    let of = |camera| supersample(rig, camera, jitters);
-    cameras.iter().map(of).collect()
-}
-
 fn errors(
-    picture: &truth::Picture,
-    truth: &Supersampled,
-    mask: &fluid_reference::Image<bool>,
+    picture: &Image<DVec3>,
+    truth: &Image<DVec3>,
+    mask: &Image<bool>,
 ) -> Result<Errors, MetricError> {
-    let (truth, mask) = (&truth.image, Some(mask));
+    let mask = Some(mask);
     Ok(Errors {
         rmse: 10_f64.powf(-psnr(picture, truth, mask)? / 20.0),
         mean: mean_difference(picture, truth, mask)?,
@@ -176,38 +160,38 @@ fn errors(
     })
 }
 
-/// What the columns of [`line`] are.
-fn heading() -> String {
-    "scene, method | size | RMSE outer, inner, inside, beside | mean of 255 outer, inner, inside \
-     | off by 0.2, all and inside | sharpness | 0.1 px: frames' difference over the truth's, \
-     pops, flips | 0.1°: the same"
-        .into()
-}
+impl Aliasing {
+    /// Writes the picture, its truth, a map of the error and crops to a folder.
+    pub(crate) fn draw(
+        &self,
+        scene: &Scene,
+        method: &Method,
+        folder: &std::path::Path,
+    ) -> Result<(), ReportError> {
+        maps::write(
+            scene,
+            method,
+            (&self.picture, &self.truth),
+            &self.edges,
+            folder,
+        )
+    }
 
-fn line(scene: &Scene, method: &Method, of: &Aliasing) -> String {
-    let cell = |region: &str, value: fn(&Errors) -> f64| {
-        let errors = of.regions.iter().find(|(name, _)| *name == region);
-        errors.map_or_else(|| "–".into(), |(_, errors)| format!("{:.4}", value(errors)))
-    };
-    let cells = |regions: &[&str], value| {
-        let cells = regions.iter().map(|region| cell(region, value));
-        cells.collect::<Vec<_>>().join(" ")
-    };
-    let mut cells = vec![
-        format!("{}, {}", scene.name, method.label())
-            .trim_end()
-            .into(),
-        format!("{}x{}", scene.camera.size.x, scene.camera.size.y),
-        cells(&["outer", "inner", "inside", "beside"], |e| e.rmse),
-        cells(&["outer", "inner", "inside"], |e| 255.0 * e.mean),
-        cells(&["all", "inside"], |e| e.off),
-        of.sharpness
-            .map_or_else(|| "–".into(), |s| format!("{s:.3}")),
-    ];
-    let motions = of.motions.iter().map(|(_, motion)| {
-        let Motion { ratio, pops, flips } = motion;
-        format!("{ratio:.3} {pops:.4} {flips:.4}")
-    });
-    cells.extend(motions);
-    cells.join(" | ")
+    /// Writes all values to a table.
+    pub(crate) fn write(&self, table: &mut Table, subject: Subject) {
+        for (region, errors) in &self.errors {
+            table.add(subject, "aliasing_rmse", region, errors.rmse, "1");
+            table.add(subject, "aliasing_mean", region, errors.mean, "1");
+            table.add(subject, "aliasing_off", region, errors.off, "1");
+        }
+        if let Some(sharpness) = self.sharpness {
+            table.add(subject, "sharpness", "inside", sharpness, "1");
+        }
+        for (path, motion) in &self.motions {
+            let [ratio, pops, flips] = path.quantities();
+            table.add(subject, ratio, "all", motion.ratio, "1");
+            table.add(subject, pops, "all", motion.pops, "1");
+            table.add(subject, flips, "all", motion.flips, "1");
+        }
+    }
 }

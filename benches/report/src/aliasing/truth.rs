@@ -9,17 +9,14 @@ use fluid_reference::{
 
 use crate::{ReportError, methods::Method, rig::Rig};
 
-/// sRGB-encoded, 0 to 1.
-pub(super) type Picture = Image<DVec3>;
-
 /// The mean of pictures that see other places of each pixel.
-pub(crate) struct Supersampled {
+pub(super) struct Supersampled {
     /// The mean of light, sRGB-encoded. Each picture's light is cut to what a screen shows before
     /// that, as it is where a hardware's samples are resolved after tone mapping: a glint that is
     /// smaller than a pixel does not fill it.
-    pub(crate) image: Picture,
+    pub(super) image: Image<DVec3>,
     /// The share of the pictures in which there is liquid.
-    pub(crate) coverage: Image<f64>,
+    pub(super) coverage: Image<f64>,
 }
 
 /// A method without antialiasing of its own: what the pictures of a mean are drawn with.

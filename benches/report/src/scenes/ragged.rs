@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use bevy::math::{DAffine3, DVec2, DVec3, Vec3, dvec3};
-use fluid_reference::{Camera, Lens, random::Random, scene, surface::Cuboid};
+use fluid_reference::{
+    Camera, Lens, ellipsoids::Ellipsoids, random::Random, scene, surface::Cuboid,
+};
 
 use super::{Measures, RADIUS, Scene, size};
 use crate::{Options, surroundings::Surroundings};
@@ -86,28 +88,41 @@ pub(super) fn pool(options: &Options, name: &'static str) -> Scene {
     }
 }
 
+/// Droplets that are spheres of the particles' radius.
+fn droplets(
+    options: &Options,
+    name: &'static str,
+    centers: Vec<DVec3>,
+    view: (DVec3, DVec3),
+    around: Surroundings,
+) -> Scene {
+    let positions = centers.iter().map(|p| p.as_vec3()).collect();
+    Scene {
+        exact: Some(Box::new(Ellipsoids::spheres(&centers, RADIUS))),
+        ..of(options, name, positions, view, around)
+    }
+}
+
 /// Droplets in a ball of 1 m: about one on each line of sight.
 pub(super) fn cloud(options: &Options, name: &'static str) -> Scene {
     let mut random = Random::new(3);
     let in_ball = std::iter::repeat_with(|| random.point()).filter(|p| p.length() < 1.0);
-    let positions = in_ball.take(1500).map(|p| p.as_vec3()).collect();
     let view = (dvec3(0.3, 0.6, 4.2), DVec3::ZERO);
-    of(options, name, positions, view, LOW)
+    droplets(options, name, in_ball.take(1500).collect(), view, LOW)
 }
 
 /// A sheet of droplets before a wall, larger than the picture.
 pub(super) fn sprayed_wall(options: &Options, name: &'static str) -> Scene {
     let mut random = Random::new(4);
-    let half = dvec3(2.0, 1.5, 0.2);
-    let positions = (0..8000)
-        .map(|_| (random.point() * half).as_vec3())
-        .collect();
+    // Few enough for none to be near eight others, which would be bulk.
+    let half = dvec3(2.0, 1.5, 0.6);
+    let centers = (0..8000).map(|_| random.point() * half).collect();
     let view = (dvec3(0.5, 0.4, 4.5), DVec3::ZERO);
     let around = Surroundings {
         floor: -2.0,
-        wall: -0.6,
+        wall: -1.0,
     };
-    of(options, name, positions, view, around)
+    droplets(options, name, centers, view, around)
 }
 
 /// A tube along a torus knot: strands behind strands.

@@ -2,10 +2,13 @@
 
 use crate::{Table, methods};
 
-use super::markdown::{Rows, number};
+use super::{
+    antialiasing,
+    markdown::{Rows, number},
+};
 
 /// A figure that was aimed for.
-struct Aim {
+pub(super) struct Aim {
     what: String,
     wanted: String,
     got: f64,
@@ -13,7 +16,7 @@ struct Aim {
 }
 
 impl Aim {
-    fn at_most(what: impl Into<String>, got: Option<f64>, most: f64) -> Option<Self> {
+    pub(super) fn at_most(what: impl Into<String>, got: Option<f64>, most: f64) -> Option<Self> {
         Some(Self {
             what: what.into(),
             wanted: format!("≤ {}", number(Some(most))),
@@ -22,7 +25,7 @@ impl Aim {
         })
     }
 
-    fn at_least(what: impl Into<String>, got: Option<f64>, least: f64) -> Option<Self> {
+    pub(super) fn at_least(what: impl Into<String>, got: Option<f64>, least: f64) -> Option<Self> {
         Some(Self {
             what: what.into(),
             wanted: format!("≥ {least}"),
@@ -39,6 +42,7 @@ pub(super) fn text(table: &Table) -> String {
     speed(table, &mut aims);
     searches(table, &mut aims);
     refractions(table, &mut aims);
+    aims.extend(antialiasing::aims(table).into_iter().flatten());
     aims.extend(Aim::at_most(
         "closed form of a medium: relative error, worst medium",
         worst_of(table, "relative_error_max"),

@@ -1,6 +1,7 @@
 //! The report in words and tables.
 
 mod aims;
+mod antialiasing;
 mod failures;
 mod markdown;
 mod published;
@@ -32,12 +33,13 @@ fn text(table: &Table, adapter: &str) -> String {
          `speed_error.csv` beside this file; that table is not in the repository.\n",
         std::thread::available_parallelism().map_or(1, usize::from),
     );
-    let parts: [Part; 10] = [
+    let parts: [Part; 11] = [
         ("What was aimed for", aims::text(table)),
         ("Presets", presets(table)),
         ("Where the time goes", passes(table)),
         ("Fronts", fronts(table)),
         ("How many refractions", refractions(table)),
+        ("Antialiasing", antialiasing::text(table)),
         ("Layers or search: what is to blame", ablation(table)),
         ("Searches in exact layers", searches(table)),
         ("What is inside", inside(table)),
@@ -52,15 +54,6 @@ fn text(table: &Table, adapter: &str) -> String {
     }
     out
 }
-
-/// The frames that are presets.
-const PRESETS: [&str; 5] = [
-    methods::DEFAULT,
-    "fast",
-    "accurate",
-    methods::THESIS,
-    methods::EARLIER,
-];
 
 /// Every preset on every scene: time relative to the default, and errors.
 fn presets(table: &Table) -> String {
@@ -79,7 +72,7 @@ fn presets(table: &Table) -> String {
     for scene in table.scenes() {
         let value = |preset, quantity, region| table.value(scene, (preset, ""), quantity, region);
         let default = value(methods::DEFAULT, "time_gpu", "all");
-        for preset in PRESETS {
+        for preset in methods::PRESETS {
             let time = value(preset, "time_gpu", "all");
             if time.is_none() {
                 continue;
@@ -125,7 +118,7 @@ fn passes(table: &Table) -> String {
     ];
     let mut rows = Rows::new(headings);
     for scene in table.scenes() {
-        for preset in PRESETS {
+        for preset in methods::PRESETS {
             let times = PASSES.map(|pass| table.value(scene, (preset, ""), pass, "all"));
             if times[0].is_some() {
                 rows.numbers(&format!("{scene}, {preset}"), times);

@@ -56,6 +56,16 @@ impl Edges {
         }
     }
 
+    /// All of them but what is beside, by name, and those together.
+    pub fn named(&self) -> [(&'static str, Image<bool>); 4] {
+        [
+            ("all", self.liquid()),
+            ("outer", self.outer.clone()),
+            ("inner", self.inner.clone()),
+            ("inside", self.inside.clone()),
+        ]
+    }
+
     /// The liquid with its silhouette.
     pub fn liquid(&self) -> Image<bool> {
         self.beside.map(|beside| !beside)

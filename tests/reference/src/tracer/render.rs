@@ -1,6 +1,6 @@
 //! Pictures, and how exact they are.
 
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 
 use super::Tracer;
 use crate::{Camera, Image, pixel_samples};
@@ -18,17 +18,16 @@ pub struct Picture {
 }
 
 impl Tracer<'_> {
-    /// Linear radiance, the mean of `side`² samples of each pixel ([`pixel_samples`]).
-    ///
-    /// One sample is exact for the middle of each pixel: what to compare a renderer without
-    /// antialiasing with.
+    /// Linear radiance, the mean of `side`² samples of each pixel ([`pixel_samples`]): what a
+    /// picture is to show. One sample is that of the pixel's middle, whose edges are stairs.
     pub fn render(&self, camera: &Camera, side: u32) -> Image<DVec3> {
-        let count = f64::from(side * side);
-        Image::from_fn(camera.size, |pixel| {
-            let samples = pixel_samples(side * side);
-            let sample = |within| self.radiance(camera.ray(pixel.as_dvec2() + within));
-            samples.map(sample).sum::<DVec3>() / count
-        })
+        Image::from_fn(camera.size, |pixel| self.pixel(camera, pixel, side))
+    }
+
+    /// A pixel of [`render`](Self::render).
+    pub fn pixel(&self, camera: &Camera, pixel: UVec2, side: u32) -> DVec3 {
+        let sample = |within| self.radiance(camera.ray(pixel.as_dvec2() + within));
+        pixel_samples(side * side).map(sample).sum::<DVec3>() / f64::from(side * side)
     }
 
     /// Quadruples the samples until the picture's error is a tenth of `judged`, the error that it

@@ -3,6 +3,7 @@
 mod common;
 
 mod camera;
+mod edges;
 mod ellipsoids;
 mod flip;
 mod medium;
