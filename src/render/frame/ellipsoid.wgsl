@@ -28,6 +28,11 @@ struct EllipsoidVertex {
     // Form 0: projected centre in pixels and device depth.
     @location(3) @interpolate(flat) center: vec3<f32>,
     @location(4) @interpolate(flat) form: u32,
+#ifdef MOTION
+    // How far the centre has moved in the world, and where it is from the eye.
+    @location(8) @interpolate(flat) displacement: vec3<f32>,
+    @location(9) @interpolate(flat) from_eye: vec3<f32>,
+#endif
 }
 
 struct Intersection {
