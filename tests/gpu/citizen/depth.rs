@@ -22,14 +22,7 @@ fn milk_or_mesh(milk: bool, more: impl FnOnce(&mut App, Entity)) -> App {
     let mut app = headless_app(SIZE, |app| {
         let (color, at) = (Color::srgb(0.05, 0.05, 0.05), Vec3::NEG_Z * 3.0);
         let mut camera = Entity::PLACEHOLDER;
-        fill(app, color, FluidMaterial::MILK, |world, it| {
-            camera = it;
-            let bright = AmbientLight {
-                brightness: 3000.0,
-                ..default()
-            };
-            world.entity_mut(camera).insert(bright);
-        });
+        fill(app, color, FluidMaterial::MILK, |_, it| camera = it);
         if !milk {
             let world = app.world_mut();
             let fluid = world
@@ -112,7 +105,11 @@ fn blurred_edge(milk: bool, msaa: Msaa, focal_distance: f32) -> u8 {
         let mut app = milk_or_mesh(milk, |app, camera| {
             app.add_plugins(PostProcessPlugin);
             let mut camera = app.world_mut().entity_mut(camera);
-            camera.insert(msaa);
+            let bright = AmbientLight {
+                brightness: 3000.0,
+                ..default()
+            };
+            camera.insert((msaa, bright));
             if blur {
                 camera.insert(DepthOfField {
                     focal_distance,
