@@ -2,8 +2,8 @@
 //! cameras with a [`MotionVectorPrepass`](bevy::core_pipeline::prepass::MotionVectorPrepass) have them,
 //! which both effects add.
 //!
-//! The nearest splat of a pixel tells how far the liquid has moved there since the frame before, and the
-//! finished layers where it is.
+//! The nearest splat of a pixel tells how far the liquid has moved there since the frame before, and
+//! the finished layers where it is.
 
 mod displacements;
 mod fluid;

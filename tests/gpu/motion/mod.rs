@@ -282,6 +282,47 @@ fn a_still_mesh_before_a_moving_liquid_keeps_its_vectors() {
     assert_eq!(still + moving, vectors.len());
 }
 
+/// Surfaces write their depth after all are painted, and their vectors where their own depth is left.
+#[test]
+fn each_of_two_liquids_has_its_own_vectors() {
+    let before = Transform::from_translation(AT + vec3(0.2, 0.0, 0.1));
+    let beside = vec3(-0.7, 0.5, -5.0);
+    let [liquid, mesh] = BOTH.map(|thing| {
+        let (mut app, ball) = ball(thing, RAW, before);
+        let milk = spawn(
+            app.world_mut(),
+            Thing::Liquid,
+            Transform::from_translation(beside),
+        );
+        app.world_mut().entity_mut(milk).insert(FluidMaterial::MILK);
+        settle(&mut app).unwrap();
+        let move_ball = |app: &mut App| place(app, ball, Transform::from_translation(AT));
+        let ball = after(&mut app, AT, move_ball);
+        let vectors = motion_vectors(&app);
+        let still = pixels(VIEW.size)
+            .filter(|it| seen_ball(beside, *it) && !seen_ball(AT, *it))
+            .filter(|it| vectors[(it.y * VIEW.size.x + it.x) as usize] == Vec2::ZERO);
+        assert!(still.count() > 200);
+        ball
+    });
+    assert_equal(&liquid, &mesh, 0.1);
+}
+
+/// There is no front, and what is seen is its far surface.
+#[test]
+fn an_eye_in_moving_liquid_has_vectors_that_are_numbers() {
+    let before = Transform::from_xyz(0.1, 0.0, 0.2);
+    let (mut app, ball) = ball(Thing::Liquid, RAW, before);
+    step(&mut app, 2);
+    place(&mut app, ball, default());
+    step(&mut app, 1);
+    assert_sound(&app);
+    let vectors = motion_vectors(&app);
+    assert!(vectors.iter().all(|it| it.is_finite()));
+    let moving = vectors.iter().filter(|it| it.length() > 1.0).count();
+    assert!(moving > 1000, "{moving}");
+}
+
 #[test]
 fn textures_for_motion_are_there_while_a_camera_asks_for_it() {
     let mut app = show(&VIEW, RAW, |world| {
