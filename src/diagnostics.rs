@@ -81,7 +81,7 @@ pub const SALVA_PARTICLES: DiagnosticPath = DiagnosticPath::const_new("fluid/sal
 pub const SALVA_STEP: DiagnosticPath = DiagnosticPath::const_new("fluid/salva/step");
 
 /// Names of the passes' time spans, in the order of the passes.
-pub const PASSES: [&str; 8] = crate::render::SPANS;
+pub const PASSES: [&str; 9] = crate::render::SPANS;
 
 /// Passes that rain uses: the copy of the scene's depth, for rain only, and Bevy's own pass for
 /// transparent objects, in which rain is drawn.

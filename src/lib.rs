@@ -63,6 +63,16 @@
 //! on the camera, sets smoothing, [`Refractions`], [`Search`] and [`Fresnel`], with presets from
 //! `FAST` to `ACCURATE`.
 //!
+//! # Antialiasing, motion blur and depth of field
+//!
+//! Bevy's ways of antialiasing all work with liquids. `TemporalAntiAliasing` and `MotionBlur` read
+//! motion vectors, which are made for cameras that have a
+//! [`MotionVectorPrepass`](bevy::core_pipeline::prepass::MotionVectorPrepass), as both require. They
+//! follow the camera, the fluid's transform, and each particle: by [`FluidParticles::ids`] from where
+//! it was in the frame before, or else by [`FluidParticles::velocities`]. They take one more draw of
+//! the splats, and 20 bytes a pixel. `DepthOfField`, decals and soft particles read the scene's
+//! depth, which holds the liquid's front.
+//!
 //! # Rain
 //!
 //! [`RainPlugin`] draws [`Rain`] for the camera that has it: streaks of drops at terminal velocity,

@@ -43,10 +43,18 @@ mod window;
 
 use std::any::TypeId;
 
-use bevy::{prelude::*, reflect::GetTypeRegistration, render::RenderApp};
+use bevy::{
+    prelude::*,
+    reflect::GetTypeRegistration,
+    render::{GpuResourceAppExt, RenderApp, render_resource::SpecializedRenderPipelines},
+};
 use bevy_egui::{
     EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass,
     input::EguiWantsInput,
+    render::{
+        EguiPipeline,
+        systems::{EguiRenderData, EguiTransforms},
+    },
 };
 
 pub use presets::{Presets, ReflectPresets};
@@ -159,10 +167,16 @@ impl Plugin for FluidInspectorPlugin {
             .add_plugins((presets::plugin, presets::views::plugin));
         #[cfg(feature = "salva")]
         app.add_plugins(presets::salva::plugin);
-        if app.get_sub_app(RenderApp).is_none() {
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             // Nobody would see it.
             return;
-        }
+        };
+        // bevy_egui makes these once, but what they hold belongs to a device, which may be lost.
+        render_app
+            .init_gpu_resource::<EguiPipeline>()
+            .init_gpu_resource::<SpecializedRenderPipelines<EguiPipeline>>()
+            .init_gpu_resource::<EguiTransforms>()
+            .init_gpu_resource::<EguiRenderData>();
         let is_shared = app.is_plugin_added::<EguiPlugin>();
         if !is_shared {
             app.add_plugins(EguiPlugin {

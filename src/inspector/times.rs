@@ -39,6 +39,7 @@ const COLORS: [Color32; PASSES.len() + 1] = [
     Color32::from_rgb(220, 200, 60),
     Color32::from_rgb(240, 120, 60),
     Color32::from_rgb(220, 90, 180),
+    Color32::from_rgb(250, 180, 200),
     Color32::from_rgb(160, 130, 240),
 ];
 

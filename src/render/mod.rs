@@ -5,6 +5,7 @@ mod composite;
 mod debug_view;
 mod frame;
 mod lighting;
+mod motion;
 mod normals;
 mod refract;
 mod scene_depth;
@@ -39,7 +40,7 @@ pub use self::{
 };
 
 /// Names of the passes' time spans, in the order of the passes.
-pub(crate) const SPANS: [&str; 8] = [
+pub(crate) const SPANS: [&str; 9] = [
     scene_depth::SPAN,
     splat::SPAN,
     frame::tiles::SPAN,
@@ -48,6 +49,7 @@ pub(crate) const SPANS: [&str; 8] = [
     normals::SPAN,
     refract::SPAN,
     composite::SPAN,
+    motion::SPAN,
 ];
 
 /// The passes of a view, in [`Core3d`], for ordering other passes against them.
@@ -68,6 +70,8 @@ pub enum FluidPasses {
     /// The liquid is composited over the opaque scene, and over glass and transparent objects behind
     /// it.
     Composite,
+    /// The liquid's motion vectors are written, if the camera has a `MotionVectorPrepass`.
+    Motion,
 }
 
 /// Draws fluids. Added by [`FluidPlugin`](crate::FluidPlugin).
@@ -94,6 +98,7 @@ impl Plugin for FluidRenderPlugin {
         normals::plugin(app);
         refract::plugin(app);
         composite::plugin(app);
+        motion::plugin(app);
         debug_view::plugin(app);
         // After all that programs and Bevy do to cameras.
         app.add_systems(Last, stacked::share_targets);
@@ -127,6 +132,10 @@ impl Plugin for FluidRenderPlugin {
                     .after(main_opaque_pass_3d)
                     .before(main_transmissive_pass_3d)
                     .before(main_transparent_pass_3d),
+                motion::motion
+                    .in_set(FluidPasses::Motion)
+                    .in_set(Core3dSystems::MainPass)
+                    .after(FluidPasses::Composite),
                 composite::give_back
                     .in_set(Core3dSystems::MainPass)
                     .after(main_transmissive_pass_3d)

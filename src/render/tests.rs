@@ -16,11 +16,16 @@ use fluid_stage::{headless_app, settle};
 use super::{
     composite::{CompositeKey, CompositePart, CompositePipeline, ShadeKey, ShadePipeline},
     debug_view::{DebugKey, DebugPipeline},
+    frame::Stage,
+    motion::{MotionKey, MotionPipeline},
     normals::{NormalSource, NormalsPipeline},
     refract::{RefractKey, RefractPipeline},
     smooth::{AveragePipeline, SmoothPipeline, steps::steps},
     splat::{SplatKey, SplatOutput, SplatPipeline},
-    surface::plan::{MediumTerms, PlanInput, plan},
+    surface::{
+        Variant,
+        plan::{MediumTerms, PlanInput, plan},
+    },
     thickness::ThicknessPipeline,
 };
 use crate::{
@@ -216,23 +221,25 @@ fn every_medium_is_made() {
     assert_variants::<RefractPipeline>(keys.collect());
 }
 
+const WATER: PlanInput = PlanInput {
+    in_view: true,
+    near_plane_cuts: false,
+    bulk: 1,
+    interior: 0,
+    spray: 1,
+    radius: 0.1,
+    material: FluidMaterial::CLEAR_WATER,
+    shortcuts: true,
+    scene_depth: true,
+    motion_vectors: false,
+    settings: ScreenSpaceFluid::DEFAULT,
+};
+
 #[test]
 fn a_medium_without_terms_costs_nothing() {
-    let input = PlanInput {
-        in_view: true,
-        near_plane_cuts: false,
-        bulk: 1,
-        interior: 0,
-        spray: 1,
-        radius: 0.1,
-        material: FluidMaterial::CLEAR_WATER,
-        shortcuts: true,
-        scene_depth: true,
-        settings: ScreenSpaceFluid::DEFAULT,
-    };
     let key = |material| {
-        let plan = plan(&PlanInput { material, ..input }).unwrap();
-        RefractKey::new(&plan, &input.settings)
+        let plan = plan(&PlanInput { material, ..WATER }).unwrap();
+        RefractKey::new(&plan, &WATER.settings)
     };
     assert_eq!(key(FluidMaterial::CLEAR_WATER), TRACED);
     // The shader's definitions are the same as before media were introduced.
@@ -285,6 +292,47 @@ fn every_shading_is_made() {
         several,
     });
     assert_variants::<ShadePipeline>(keys.collect());
+}
+
+#[test]
+fn every_motion_is_made() {
+    let splats = BOTH.map(|cut| MotionKey::Splats { cut });
+    let camera = [1, 4].map(|samples| MotionKey::ToCamera { samples });
+    assert_variants::<MotionPipeline>([splats, camera].concat());
+}
+
+/// Neither pipelines nor textures are made for cameras that do not ask for motion vectors.
+#[test]
+fn motion_vectors_cost_nothing_unless_asked_for() {
+    let mut app = headless_app(UVec2::splat(16), |app| {
+        app.add_plugins(FluidPlugin::default());
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    let stage = app.sub_app(RenderApp).world().resource::<MotionPipeline>();
+    let keys = |motion_vectors| {
+        let input = PlanInput {
+            motion_vectors,
+            ..WATER
+        };
+        stage.keys(&Variant {
+            plan: plan(&input).unwrap(),
+            settings: input.settings,
+            debug_view: None,
+            format: TextureFormat::Rgba16Float,
+            samples: 4,
+            scene_depth: true,
+            fog: false,
+            atmosphere: false,
+            several: false,
+        })
+    };
+    assert_eq!(keys(false), []);
+    let asked = [
+        MotionKey::Splats { cut: false },
+        MotionKey::ToCamera { samples: 4 },
+    ];
+    assert_eq!(keys(true), asked);
 }
 
 #[test]

@@ -36,6 +36,9 @@ pub use self::{
 /// 320×240 on a software driver, and the FLIP error against ray-traced pictures of a ball and of a
 /// half-filled box.
 ///
+/// With a [`MotionVectorPrepass`](bevy::core_pipeline::prepass::MotionVectorPrepass), which temporal
+/// antialiasing and motion blur require, the camera has motion vectors of the liquid too.
+///
 /// Values out of range are logged once and clamped.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]

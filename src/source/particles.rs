@@ -26,10 +26,10 @@ pub struct FluidParticles {
     /// Centres. Unit: m, default: none. Particles that are not finite are dropped and counted in
     /// [`ShapedFluid::dropped`].
     pub positions: Vec<Vec3>,
-    /// Velocities. Unit: m/s, default: none.
+    /// Velocities. Unit: m/s, default: none. For motion vectors of particles without ids.
     pub velocities: Vec<Vec3>,
     /// Ids, each of one particle for as long as it lives, by which it is found again in another
-    /// frame. Default: none.
+    /// frame. Default: none. Motion vectors follow them.
     pub ids: Vec<u32>,
     /// The space of the positions, the velocities and the radius. Default: [`ParticleSpace::Local`].
     pub space: ParticleSpace,
@@ -69,18 +69,15 @@ impl FluidParticles {
     }
 
     /// The velocities, if there is one for each particle.
-    #[cfg(feature = "recordings")]
     pub(crate) fn whole_velocities(&self) -> &[Vec3] {
         self.whole(&self.velocities)
     }
 
     /// The ids, if there is one for each particle.
-    #[cfg(feature = "recordings")]
     pub(crate) fn whole_ids(&self) -> &[u32] {
         self.whole(&self.ids)
     }
 
-    #[cfg(feature = "recordings")]
     fn whole<'a, T>(&self, column: &'a [T]) -> &'a [T] {
         let is_whole = column.len() == self.positions.len();
         if is_whole { column } else { &[] }

@@ -13,8 +13,13 @@ use bevy::{
         settings::{RenderCreation, WgpuSettings},
     },
 };
-use bevy_fluid::{particles::ShapedFluid, prelude::*};
-use fluid_stage::{Stage, capture, headless_app_with, step};
+use bevy_fluid::{
+    inspector::{FluidInspector, FluidInspectorPlugin},
+    particles::ShapedFluid,
+    prelude::*,
+};
+use core::time::Duration;
+use fluid_stage::{Stage, capture, headless_app, headless_app_with, set_time_step, step};
 
 const VIEW: View = View::new(
     64,
@@ -104,6 +109,99 @@ fn a_lost_device_is_survived_by_several_surfaces_in_a_multisampled_view() {
     assert_sound(&app);
     assert_eq!(surfaces(&app).len(), 2);
     assert!(capture(&mut app).unwrap() == before);
+}
+
+/// Liquid that is simulated in a tank, in rain, beside the inspector.
+fn busy_app() -> App {
+    let mut app = headless_app(uvec2(480, 320), |app| {
+        app.add_plugins((
+            FluidPlugin::default(),
+            RainPlugin {
+                synchronous_bake: true,
+            },
+            SalvaPlugin,
+            FluidInspectorPlugin {
+                open: true,
+                ..default()
+            },
+        ))
+        .insert_resource(SalvaSettings {
+            mode: SalvaMode::Lockstep,
+            ..default()
+        });
+        let world = app.world_mut();
+        world.spawn((
+            Camera3d::default(),
+            ScreenSpaceFluid::default(),
+            Rain::HEAVY,
+            Transform::from_xyz(-0.4, 1.0, 3.0).looking_at(vec3(-0.4, 0.5, 0.0), Vec3::Y),
+        ));
+        let tank = SalvaBoundary::tank(vec3(1.2, 2.0, 0.8));
+        world.spawn((tank, Transform::from_xyz(0.0, 1.0, 0.0)));
+        let block = lattice(6, 0.1, 0.0);
+        let positions = block.iter().map(|p| p + vec3(-0.55, 0.3, -0.25)).collect();
+        world.spawn((
+            FluidParticles::new(positions, 0.05),
+            SalvaFluid::WATER,
+            FluidMaterial::MILK,
+        ));
+    })
+    .unwrap();
+    settle(&mut app).unwrap();
+    app
+}
+
+/// Mean height of all particles.
+fn height(app: &mut App) -> f32 {
+    let fluid = only::<FluidParticles>(app);
+    let positions = &app.world().get::<FluidParticles>(fluid).unwrap().positions;
+    positions.iter().map(|p| p.y).sum::<f32>() / positions.len() as f32
+}
+
+/// The picture without the inspector, whose figures change, and how many of its pixels that covers.
+fn beside_inspector(app: &mut App) -> (image::RgbaImage, usize) {
+    let mut draw = |open| {
+        app.world_mut().resource_mut::<FluidInspector>().open = open;
+        // Its window fades.
+        set_time_step(app, Duration::from_millis(100));
+        app.world_mut().resource_mut::<SalvaSettings>().paused = true;
+        app.world_mut().resource_mut::<Time<Virtual>>().pause();
+        step(app, 8);
+        set_time_step(app, Duration::ZERO);
+        capture(app).unwrap()
+    };
+    let (with, without) = (draw(true), draw(false));
+    let covered = with.pixels().zip(without.pixels());
+    let covered = covered.filter(|(a, b)| a != b).count();
+    (without, covered)
+}
+
+#[test]
+fn h53_a_lost_device_is_survived_by_rain_simulation_and_inspector() {
+    let mut app = busy_app();
+    let start = height(&mut app);
+    set_time_step(&mut app, Duration::from_secs_f32(1.0 / 60.0));
+    step(&mut app, 4);
+    let before = height(&mut app);
+    lose_device(&mut app);
+    assert_sound(&app);
+    let after = height(&mut app);
+    assert!(after < before && before < start, "{start} {before} {after}");
+    step(&mut app, 4);
+    let later = height(&mut app);
+    assert!(later < after, "{after} {later}");
+
+    let (before, covered) = beside_inspector(&mut app);
+    assert!(covered > 10_000, "the inspector covers {covered} pixels");
+    lose_device(&mut app);
+    assert_sound(&app);
+    let (after, covers) = beside_inspector(&mut app);
+    assert!(before == after, "the picture comes back");
+    let change = (covers as f64 / covered as f64 - 1.0).abs();
+    assert!(
+        change < 0.05,
+        "the inspector covers {covered}, then {covers}"
+    );
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod frames;
 mod hard_cases;
 mod layers;
 mod medium;
+mod motion;
 mod order;
 mod rain;
 mod random_cameras;

@@ -3,6 +3,7 @@
 use std::{fs, path::Path, thread, time::Duration};
 
 use bevy::{
+    core_pipeline::prepass::MotionVectorPrepass,
     ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
     prelude::*,
     render::{ExtractSchedule, Render, RenderApp, camera::CameraRenderGraph},
@@ -139,8 +140,8 @@ fn a_player_whose_frames_are_all_there() {
 struct NoPasses;
 
 /// How often a frame without passes asks for memory, at the least, with `count` fluids of a colour
-/// of their own in view.
-fn prepared(count: usize) -> usize {
+/// of their own in view, and with motion vectors or without.
+fn prepared(count: usize, motion_vectors: bool) -> usize {
     let mut app = headless_app(UVec2::splat(64), |app| {
         app.add_plugins(FluidPlugin::default());
         for schedule in [
@@ -154,11 +155,14 @@ fn prepared(count: usize) -> usize {
             });
         }
         let world = app.world_mut();
-        world.spawn((
+        let mut camera = world.spawn((
             Camera3d::default(),
             ScreenSpaceFluid::default(),
             CameraRenderGraph::new(NoPasses),
         ));
+        if motion_vectors {
+            camera.insert(MotionVectorPrepass);
+        }
         for i in 0..count {
             let material = FluidMaterial {
                 refractive_index: 1.3 + 0.1 * i as f32,
@@ -192,10 +196,12 @@ fn prepared(count: usize) -> usize {
 #[test]
 fn surfaces_are_extracted_and_prepared_without_allocations() {
     let _alone = heap::alone();
-    let (without, with) = (prepared(0), prepared(12));
-    // Bevy itself asks for a few, once there is anything that may be visible.
-    assert!(
-        with < without + 12,
-        "{with} for 12 surfaces, {without} for none"
-    );
+    for motion_vectors in [false, true] {
+        let [without, with] = [0, 12].map(|count| prepared(count, motion_vectors));
+        // Bevy itself asks for a few, once there is anything that may be visible.
+        assert!(
+            with < without + 12,
+            "{with} for 12 surfaces, {without} for none; motion vectors: {motion_vectors}"
+        );
+    }
 }

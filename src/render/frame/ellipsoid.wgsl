@@ -34,6 +34,11 @@ struct EllipsoidVertex {
     @location(5) @interpolate(flat) outline: vec3<f32>,
     @location(6) @interpolate(flat) bend: vec3<f32>,
 #endif
+#ifdef MOTION
+    // How far the centre has moved in the world, and where it is from the eye.
+    @location(8) @interpolate(flat) displacement: vec3<f32>,
+    @location(9) @interpolate(flat) from_eye: vec3<f32>,
+#endif
 }
 
 const PI: f32 = 3.14159265;

@@ -212,6 +212,7 @@ impl Splats<'_, '_> {
         surface: &Surface,
         plan: &Plan,
         class: Class,
+        of_fluid: Option<GroupOf<'a>>,
     ) {
         for fluid in &surface.fluids {
             let Ok(splats) = self.fluids.get(fluid.entity) else {
@@ -220,6 +221,12 @@ impl Splats<'_, '_> {
             let Some(group) = splats.group.get() else {
                 continue;
             };
+            if let Some(of_fluid) = of_fluid {
+                let Some((group, offset)) = of_fluid(fluid.entity) else {
+                    continue;
+                };
+                pass.set_bind_group(2, group, &[offset]);
+            }
             let bulk = fluid.bulk + if plan.interior { fluid.interior } else { 0 };
             let spray = fluid.bulk + fluid.interior;
             let range = match class {
@@ -235,11 +242,11 @@ impl Splats<'_, '_> {
     }
 
     /// A pass over the splats of some classes of a surface; none without an attachment.
-    pub(crate) fn record(
-        &self,
-        ctx: &mut RenderContext,
-        (surface, frame): (&Surface, &Frame),
-        pass: SplatPass,
+    pub(crate) fn record<'a>(
+        &'a self,
+        ctx: &'a mut RenderContext,
+        (surface, frame): (&Surface, &'a Frame),
+        pass: SplatPass<'a>,
         classes: &[Class],
     ) {
         let SplatPass {
@@ -268,7 +275,7 @@ impl Splats<'_, '_> {
             recorded.set_bind_group(2, finished, &[]);
         }
         for &class in classes {
-            self.draw(&mut recorded, surface, plan, class);
+            self.draw(&mut recorded, surface, plan, class, pass.of_fluid);
         }
     }
 }
@@ -284,7 +291,12 @@ pub(crate) struct SplatPass<'a> {
     pub(crate) depth: Option<RenderPassDepthStencilAttachment<'a>>,
     /// Group 2: finished layers that splats are compared with.
     pub(crate) finished: Option<&'a BindGroup>,
+    /// Group 2, if each fluid has its own.
+    pub(crate) of_fluid: Option<GroupOf<'a>>,
 }
+
+/// The bind group of a fluid, with its dynamic offset.
+pub(crate) type GroupOf<'a> = &'a dyn Fn(Entity) -> Option<(&'a BindGroup, u32)>;
 
 impl<'a> SplatPass<'a> {
     /// Sums up a value over splats.

@@ -69,6 +69,9 @@ pub struct Surface {
     /// Nearest and farthest depth of its bounding box. Unit: m, in the view.
     pub(crate) depths: Vec2,
     pub(crate) uniform: GpuSurface,
+    /// From this frame's view space to the screen, without jitter: of this frame and of the one before.
+    /// For motion vectors.
+    pub(crate) clip_from_view: Option<[Mat4; 2]>,
 }
 
 impl Surface {

@@ -29,6 +29,8 @@ pub struct PlanInput {
     pub shortcuts: bool,
     /// Whether the opaque scene's depth is known, from the camera's `DepthPrepass`.
     pub scene_depth: bool,
+    /// Whether the camera has a `MotionVectorPrepass`.
+    pub motion_vectors: bool,
     /// The camera's settings.
     pub settings: ScreenSpaceFluid,
 }
@@ -58,6 +60,8 @@ pub struct Plan {
     pub terms: MediumTerms,
     /// How edges and details are antialiased.
     pub antialiasing: Antialiasing,
+    /// Whether motion vectors are written.
+    pub motion_vectors: bool,
 }
 
 impl Plan {
@@ -165,6 +169,7 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
             Antialiasing::Full { .. } if index_one => Antialiasing::Edges,
             wanted => wanted,
         },
+        motion_vectors: input.motion_vectors,
     })
 }
 
@@ -182,6 +187,7 @@ mod tests {
         material: FluidMaterial::WATER,
         shortcuts: true,
         scene_depth: true,
+        motion_vectors: false,
         settings: ScreenSpaceFluid::DEFAULT,
     };
 
@@ -234,6 +240,16 @@ mod tests {
             ..POOL
         });
         assert_eq!(blind.unwrap().interfaces, 0);
+    }
+
+    #[test]
+    fn motion_vectors_are_written_for_cameras_that_have_them() {
+        let asked = PlanInput {
+            motion_vectors: true,
+            ..POOL
+        };
+        let of = |input| plan(&input).unwrap().motion_vectors;
+        assert!(of(asked) && !of(POOL));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use bevy::{
     camera::MainPassResolutionOverride,
-    core_pipeline::prepass::DepthPrepass,
-    math::{Affine3A, Vec3A},
+    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, PreviousViewData},
+    math::{Affine3A, DMat4, Vec3A},
     pbr::{DistanceFog, GpuAtmosphereSettings, PrepassPipeline, resources::AtmosphereTextures},
     prelude::*,
     render::{camera::ExtractedCamera, renderer::RenderDevice, view::ExtractedView},
@@ -59,6 +59,7 @@ pub(super) fn prepare_surfaces(
         &FluidView,
         Option<&MainPassResolutionOverride>,
         Has<DepthPrepass>,
+        (Has<MotionVectorPrepass>, Option<&PreviousViewData>),
         Has<DistanceFog>,
         Has<AtmosphereTextures>,
         // Of an atmosphere that has ended, only the textures stay.
@@ -80,8 +81,19 @@ pub(super) fn prepare_surfaces(
     for (_, mut view) in &mut painted {
         view.surfaces.clear();
     }
-    for (entity, view, camera, msaa, fluid_view, resolution, has_prepass, fog, air, has_air) in
-        &views
+    for (
+        entity,
+        view,
+        camera,
+        msaa,
+        fluid_view,
+        resolution,
+        has_prepass,
+        (motion_vectors, before),
+        fog,
+        air,
+        has_air,
+    ) in &views
     {
         if camera.physical_target_size.is_none() {
             continue;
@@ -106,6 +118,7 @@ pub(super) fn prepare_surfaces(
             "has no `Hdr`: its liquids are not tone mapped",
         );
         let eye = Eye::new(view);
+        let clip_from_view = motion_vectors.then(|| clip_from_view(view, before));
         if let Some(views) = &mut report {
             views.push(ViewReport {
                 camera: main_camera,
@@ -144,6 +157,7 @@ pub(super) fn prepare_surfaces(
                 material,
                 shortcuts: shortcuts.0,
                 scene_depth,
+                motion_vectors,
                 settings: fluid_view.settings,
             };
             let leading = members[0].fluid.entity;
@@ -187,6 +201,7 @@ pub(super) fn prepare_surfaces(
                 known.rect = rect;
                 known.depths = depths;
                 known.uniform = uniform;
+                known.clip_from_view = clip_from_view;
                 surface
             } else {
                 let is_member =
@@ -203,6 +218,7 @@ pub(super) fn prepare_surfaces(
                     rect,
                     depths,
                     uniform,
+                    clip_from_view,
                 };
                 commands.spawn(new).id()
             };
@@ -238,6 +254,19 @@ pub(super) fn prepare_surfaces(
         }
     }
     reporter.end(report);
+}
+
+/// See [`Surface::clip_from_view`].
+fn clip_from_view(view: &ExtractedView, before: Option<&PreviousViewData>) -> [Mat4; 2] {
+    let now = view.clip_from_view;
+    let before = before.map(|before| {
+        // Far from the origin, the two transforms cancel each other out.
+        let world_from_view = view.world_from_view.to_matrix().as_dmat4();
+        let view_from_view = before.view_from_world.as_dmat4() * world_from_view;
+        let clip_from_view: DMat4 = before.clip_from_view.as_dmat4() * view_from_view;
+        clip_from_view.as_mat4()
+    });
+    [now, before.unwrap_or(now)]
 }
 
 /// A view's geometry. Everything is relative to the eye: far from the origin, a product of large

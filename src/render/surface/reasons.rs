@@ -101,6 +101,11 @@ pub fn skipped(input: &PlanInput) -> Vec<Skipped> {
             "emission",
             "its medium does not shine",
         ),
+        (
+            !plan.motion_vectors,
+            "motion vectors",
+            "the camera has no MotionVectorPrepass",
+        ),
     ]
     .into_iter()
     .filter(|(left_out, ..)| *left_out)
@@ -255,6 +260,7 @@ mod tests {
         material: FluidMaterial::WATER,
         shortcuts: true,
         scene_depth: true,
+        motion_vectors: true,
         settings: ScreenSpaceFluid::DEFAULT,
     };
 
@@ -325,6 +331,15 @@ mod tests {
             ..POOL
         };
         assert_eq!(words(blind), ["refraction", "scattering", "emission"]);
+    }
+
+    #[test]
+    fn motion_vectors_that_nobody_asks_for_are_named() {
+        let still = PlanInput {
+            motion_vectors: false,
+            ..POOL
+        };
+        assert_eq!(words(still), ["scattering", "emission", "motion vectors"]);
     }
 
     #[test]

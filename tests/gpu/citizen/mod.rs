@@ -4,6 +4,7 @@ mod background;
 mod behind;
 mod cameras;
 mod changes;
+mod depth;
 mod fog;
 mod lights;
 
