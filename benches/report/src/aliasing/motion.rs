@@ -1,5 +1,7 @@
 //! What flickers while the camera moves.
 
+use std::path::PathBuf;
+
 use bevy::math::{DAffine3, DVec2, DVec3, UVec2, dvec2};
 use fluid_reference::{
     Camera, Image,
@@ -8,7 +10,7 @@ use fluid_reference::{
 
 use super::{
     OFF,
-    truth::{Supersampled, supersample},
+    truth::{Supersampled, kept_or_drawn},
 };
 use crate::{Options, ReportError, rig::Rig};
 
@@ -64,13 +66,18 @@ impl Path {
         camera: &Camera,
         distance: f64,
         options: &Options,
+        keep: impl Fn(&str) -> Option<PathBuf>,
     ) -> Result<Walk, ReportError> {
         let frames = if options.quick { QUICK_FRAMES } else { FRAMES };
         let jitters = options.jitters().min(JITTERS);
         let cameras: Vec<_> = (0..frames)
             .map(|i| self.place(camera, distance, f64::from(i)))
             .collect();
-        let truths = cameras.iter().map(|at| supersample(rig, at, jitters));
+        let name = self.quantities()[0];
+        let truths = cameras.iter().enumerate().map(|(i, at)| {
+            let kept = keep(&format!("{name}-{i}-{jitters}"));
+            kept_or_drawn(rig, at, jitters, kept.as_deref())
+        });
         Ok(Walk {
             path: self,
             truths: truths.collect::<Result<_, _>>()?,

@@ -3,7 +3,7 @@
 use bevy::math::{DVec2, DVec3, UVec2, dvec2, uvec2};
 use fluid_reference::Image;
 
-use super::{supersample, unfiltered};
+use super::truth::{supersample, unfiltered};
 use crate::{methods, rig::Rig, scenes};
 
 fn rig(size: &str) -> (scenes::Scene, Rig) {

@@ -1,11 +1,15 @@
 //! The mean over each pixel.
 
-use bevy::math::{DVec2, DVec3};
+use std::path::Path;
+
+use bevy::math::{DVec2, DVec3, UVec2};
 use fluid_reference::{
     Camera, Image,
     metrics::{decode_srgb, encode_srgb},
     pixel_samples,
 };
+
+use image::{ImageBuffer, Rgba};
 
 use crate::{ReportError, methods::Method, rig::Rig};
 
@@ -22,6 +26,53 @@ pub(super) struct Supersampled {
 /// A method without antialiasing of its own: what the pictures of a mean are drawn with.
 pub(super) fn unfiltered(method: &Method) -> Method {
     method.clone()
+}
+
+/// [`supersample`], or what it has left in a file of this name before.
+pub(super) fn kept_or_drawn(
+    rig: &mut Rig,
+    camera: &Camera,
+    count: u32,
+    kept: Option<&Path>,
+) -> Result<Supersampled, ReportError> {
+    if let Some(truth) = kept.and_then(|path| Supersampled::read(path, camera.size)) {
+        return Ok(truth);
+    }
+    let truth = supersample(rig, camera, count)?;
+    if let Some(path) = kept {
+        truth.write(path)?;
+    }
+    Ok(truth)
+}
+
+impl Supersampled {
+    /// From a picture whose alpha is coverage; `None` where there is none of this size.
+    fn read(path: &Path, size: UVec2) -> Option<Self> {
+        let kept = image::open(path).ok()?.into_rgba16();
+        let part = |value: u16| f64::from(value) / f64::from(u16::MAX);
+        let fits = UVec2::from(kept.dimensions()) == size;
+        fits.then(|| Self {
+            image: Image::from_fn(size, |UVec2 { x, y }| {
+                let [r, g, b, _] = kept.get_pixel(x, y).0;
+                DVec3::from([r, g, b].map(part))
+            }),
+            coverage: Image::from_fn(size, |UVec2 { x, y }| part(kept.get_pixel(x, y).0[3])),
+        })
+    }
+
+    fn write(&self, path: &Path) -> Result<(), ReportError> {
+        let size = self.image.size();
+        let picture = ImageBuffer::from_fn(size.x, size.y, |x, y| {
+            let at = UVec2::new(x, y);
+            let color = self.image.get(at).extend(*self.coverage.get(at));
+            let of = |value: f64| (value * f64::from(u16::MAX)).round() as u16;
+            Rgba(color.to_array().map(of))
+        });
+        picture.save(path).map_err(|error| ReportError::Plot {
+            path: path.into(),
+            reason: error.to_string(),
+        })
+    }
 }
 
 /// The mean of `count` pictures; the rig is left looking past the middles of its pixels.
