@@ -52,7 +52,8 @@ pub(super) fn text(table: &Table) -> String {
          Sharpness is gradient energy over the mean's. Differences from frame to frame, while the \
          camera moves by a tenth of a pixel or turns by a tenth of a degree, are over the mean's; \
          a pixel pops where it changes by 0.2 and the mean does not. FLIP and the last RMSE are from \
-         the tracer's picture of 64 rays a pixel, where the surface's form is known.\n\n{}",
+         the tracer's picture of 64 rays a pixel, or of 4 and without FLIP where the surface is \
+         implicit.\n\n{}",
         rows.finish()
     )
 }
