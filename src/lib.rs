@@ -151,8 +151,8 @@ pub use crate::{
     rain::{Rain, RainPlugin},
     render::LayerBlending,
     settings::{
-        FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, ScreenSpaceFluid, Search,
-        SettingRange, Smoothing, Window,
+        Antialiasing, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions,
+        ScreenSpaceFluid, Search, SettingRange, Smoothing, Window,
     },
     shape::SurfaceKernel,
 };

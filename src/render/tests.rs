@@ -14,7 +14,7 @@ use bevy::{
 use fluid_stage::{headless_app, settle};
 
 use super::{
-    composite::{CompositeKey, CompositePart, CompositePipeline},
+    composite::{CompositeKey, CompositePart, CompositePipeline, ShadeKey, ShadePipeline},
     debug_view::{DebugKey, DebugPipeline},
     normals::{NormalSource, NormalsPipeline},
     refract::{RefractKey, RefractPipeline},
@@ -77,10 +77,17 @@ fn every_splat_output_is_made() {
         SplatOutput::BackDepth,
         SplatOutput::Count(TextureFormat::R32Float),
         SplatOutput::Count(TextureFormat::R16Float),
+        SplatOutput::Coverage,
     ];
-    let keys = outputs
-        .into_iter()
-        .flat_map(|output| [false, true].map(|cut| SplatKey { output, cut }));
+    let keys = pairs(&pairs(&outputs, &BOTH), &BOTH);
+    let keys = keys.into_iter().map(|((output, cut), covers)| SplatKey {
+        output,
+        cut,
+        covers: match output {
+            SplatOutput::Layers | SplatOutput::Fronts => covers,
+            _ => output == SplatOutput::Coverage,
+        },
+    });
     assert_variants::<SplatPipeline>(keys.collect());
 }
 
@@ -256,18 +263,28 @@ fn every_composite_is_made() {
     let keys = pairs(&pairs(&parts, &formats), &pairs(&[1, 4], &BOTH));
     let keys = keys
         .into_iter()
-        .flat_map(|((part, format), (samples, several))| {
-            let haze = [(false, false), (true, false), (true, true)];
-            haze.map(|(fog, atmosphere)| CompositeKey {
-                format,
-                samples,
-                part,
-                fog,
-                atmosphere,
-                several,
-            })
+        .map(|((part, format), (samples, covers))| CompositeKey {
+            format,
+            samples,
+            part,
+            covers,
+            bulk: covers,
+            spray: true,
+            resolve: None,
         });
     assert_variants::<CompositePipeline>(keys.collect());
+}
+
+#[test]
+fn every_shading_is_made() {
+    let haze = [(false, false), (true, false), (true, true)];
+    let keys = pairs(&haze, &BOTH).into_iter();
+    let keys = keys.map(|((fog, atmosphere), several)| ShadeKey {
+        fog,
+        atmosphere,
+        several,
+    });
+    assert_variants::<ShadePipeline>(keys.collect());
 }
 
 #[test]

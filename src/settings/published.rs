@@ -3,7 +3,8 @@
 use bevy::prelude::*;
 
 use super::{
-    Fresnel, PlaneFit, Refractions, ScreenSpaceFluid, Search, SettingRange, Smoothing, Window,
+    Antialiasing, Fresnel, PlaneFit, Refractions, ScreenSpaceFluid, Search, SettingRange,
+    Smoothing, Window,
 };
 
 impl ScreenSpaceFluid {
@@ -16,6 +17,7 @@ impl ScreenSpaceFluid {
         search: Search::Secant,
         fresnel: Fresnel::Schlick,
         contact: 0.0,
+        antialiasing: Antialiasing::None,
     };
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
@@ -27,6 +29,7 @@ impl ScreenSpaceFluid {
         search: Search::Secant,
         fresnel: Fresnel::Schlick,
         contact: 0.0,
+        antialiasing: Antialiasing::None,
     };
 }
 

@@ -23,7 +23,7 @@ use bevy::{
 use bevy_fluid::{
     prelude::*,
     render::{Layers, Surface, ViewSurfaces},
-    settings::{Fresnel, Refractions, Search, Smoothing},
+    settings::{Antialiasing, Fresnel, Refractions, Search, Smoothing},
 };
 use fluid_stage::{TextureData, headless_app, read_texture};
 
@@ -62,6 +62,7 @@ pub(crate) const RAW: ScreenSpaceFluid = ScreenSpaceFluid {
     search: Search::BRACKETED,
     fresnel: Fresnel::Exact,
     contact: 0.0,
+    antialiasing: Antialiasing::None,
 };
 
 /// A camera's view.

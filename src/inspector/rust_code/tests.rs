@@ -6,8 +6,8 @@ use crate::{
     prelude::*,
     rain::{Exposure, RainStreakSettings},
     settings::{
-        Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions, Search, Smoothing,
-        Window,
+        Antialiasing, Bilateral, FluidDebugView, Fresnel, PlaneFit, PlaneFitForm, Refractions,
+        Search, Smoothing, Window,
     },
     solid::SolidShape,
 };
@@ -87,6 +87,7 @@ fn the_code_of_every_kind_of_camera_compiles() {
             search: Search::Secant,
             fresnel: Fresnel::Schlick,
             contact: 0.0,
+            antialiasing: Antialiasing::None,
             ..default()
         }
     );
@@ -101,6 +102,7 @@ fn the_code_of_every_kind_of_camera_compiles() {
             search: Search::Secant,
             fresnel: Fresnel::Schlick,
             contact: 0.0,
+            antialiasing: Antialiasing::None,
         }
     );
 }

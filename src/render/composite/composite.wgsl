@@ -1,26 +1,19 @@
 // The liquid over the opaque scene.
 
-#import bevy_fluid::render::frame::{frame, surface, view}
-#import bevy_fluid::render::functions::{
-    decode_normal, depth_map, device_from_view, has_back, nearest_scene_depth,
-    ndc_from_pixel, pixel_from_camera, pixel_from_ndc, texel_at, view_depth, view_from_device,
-}
-#import bevy_fluid::render::haze::haze_before
-#import bevy_fluid::render::optics::{environment, lighting}
+#import bevy_fluid::render::background::scene_color
+#import bevy_fluid::render::frame::frame
+#import bevy_fluid::render::functions::{has_back, nearest_scene_depth, pixel_from_camera, texel_at}
+#import bevy_fluid::render::lit::{is_lit, light_of, tame}
+#import bevy_fluid::render::refract::layers::{BULK, SPRAY, load_layers}
 #import bevy_fluid::render::types::INSIDE_FRONT
+#ifdef RESOLVE
+#import bevy_fluid::render::resolve::resolved
+#endif
 
-// Radiance, and the transmitted fraction of red.
-@group(1) @binding(0) var radiance: texture_2d<f32>;
-// The transmitted fractions of green and blue.
-@group(1) @binding(1) var transmission: texture_2d<f32>;
-@group(1) @binding(2) var exits: texture_2d<u32>;
-@group(1) @binding(3) var bulk_layers: texture_2d<f32>;
-@group(1) @binding(4) var spray_layers: texture_2d<f32>;
-
-// The scene's colour as it is before this surface, and before any.
-@group(3) @binding(0) var scene_color: texture_2d<f32>;
-@group(3) @binding(1) var scene_before: texture_2d<f32>;
-@group(3) @binding(2) var scene_sampler: sampler;
+@group(1) @binding(7) var coverage: texture_2d<f32>;
+// For dense media: the transmitted fractions of red in its alpha, and of green and blue.
+@group(1) @binding(8) var radiance: texture_2d<f32>;
+@group(1) @binding(9) var transmission: texture_2d<f32>;
 
 struct Output {
 #ifndef DEPTH_ALONE
@@ -29,235 +22,85 @@ struct Output {
     @builtin(frag_depth) depth: f32,
 }
 
-const THERE: u32 = 0x80000000u;
-const DIRECT: u32 = 0x80000u;
-// A step is a few pixels long, so short tracks need few steps.
-const STEP_PIXELS: f32 = 6.0;
-const MAX_STEPS: f32 = 32.0;
-const HALVINGS: i32 = 4;
-
-fn color_in(scene: texture_2d<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    // Half a pixel off the viewport's edge, so that no neighbour outside of it is mixed in.
-    let inside = clamp(pixel, vec2(0.5), frame.view_size - 0.5) + frame.view_origin;
-    let uv = inside / vec2<f32>(textureDimensions(scene));
-    return textureSampleLevel(scene, scene_sampler, uv, 0.0);
-}
-
-// The scene's premultiplied colour and its alpha.
-fn color_at(pixel: vec2<f32>) -> vec4<f32> {
-    return color_in(scene_color, pixel);
-}
-
-// A surface painted earlier. Surfaces are in no depth texture that could be searched; if the colour
-// has changed where the ray passes the next surface's centre, that colour is used.
-struct Painted {
-    is_there: bool,
+// What is seen of the liquid at a pixel.
+struct Seen {
     color: vec4<f32>,
+    // Device depth.
+    depth: f32,
 }
 
-fn painted_behind(position: vec3<f32>, direction: vec3<f32>) -> Painted {
-#ifdef SEVERAL
-    let t = dot(surface.behind.xyz - position, direction);
-    let device = device_from_view(position + t * direction);
-    let is_ahead = (surface.behind.w > 0.0) & (t > 0.0);
-    if is_ahead && all(abs(device.xy) <= vec2(1.0)) && device.z > 0.0 {
-        let pixel = pixel_from_ndc(device.xy);
-        let color = color_at(pixel);
-        let is_there = nearest_scene_depth(vec2<i32>(pixel)) <= 0.0
-            && any(color != color_in(scene_before, pixel));
-        return Painted(is_there, color);
+// The visible depth of a pixel of liquid.
+fn depth_at(pixel: vec2<i32>) -> f32 {
+    let bulk = load_layers(BULK, pixel);
+    let spray = load_layers(SPRAY, pixel);
+    let front = max(bulk.x, spray.x);
+    if front < INSIDE_FRONT {
+        return front;
     }
+    // The eye is in the liquid: its far surface, or an opaque thing in it, is visible.
+    let layers = select(spray, bulk, bulk.x >= INSIDE_FRONT);
+    return max(select(0.0, -layers.y, has_back(layers)), nearest_scene_depth(pixel));
+}
+
+#ifdef COVERAGE
+// The liquid beside a pixel whose middle it misses.
+fn beside(pixel: vec2<i32>) -> Seen {
+    var sum = vec4(0.0);
+    var total = 0.0;
+    var depth = 0.0;
+    for (var j = -1; j <= 1; j += 1) {
+        for (var i = -1; i <= 1; i += 1) {
+            let found = light_of(pixel + vec2(i, j));
+            if is_lit(found) {
+                let weight = f32((2 - abs(i)) * (2 - abs(j))) * tame(found);
+                sum += weight * found;
+                total += weight;
+                depth = max(depth, depth_at(pixel + vec2(i, j)));
+            }
+        }
+    }
+    return Seen(select(vec4(-1.0), sum / total, total > 0.0), depth);
+}
 #endif
-    return Painted(false, vec4(0.0));
-}
-
-// The end of a ray on screen, where it leaves the viewport or comes to its vanishing point.
-struct Track {
-    start: vec3<f32>,
-    end: vec3<f32>,
-    // Whether it comes to its vanishing point there.
-    vanishes: bool,
-}
-
-// Along a ray the screen position and the device depth are affine in each other.
-fn track(position: vec3<f32>, direction: vec3<f32>) -> Track {
-    let start = device_from_view(position);
-    let clip = view.clip_from_view * vec4(direction, 0.0);
-    var end: vec3<f32>;
-    if clip.w > 1e-6 {
-        end = clip.xyz / clip.w;
-    } else {
-        // Parallel to the screen, towards the eye, or orthographic: as far as the depths go.
-        let far = 1e3 * (abs(position.z) + surface.radius);
-        let t = select(far, start.z / -clip.z, clip.z < 0.0 && clip.w >= 0.0);
-        end = device_from_view(position + t * direction);
-        if clip.w < 0.0 {
-            end = start;
-        }
-    }
-    let recedes = clip.w > 1e-6 || (clip.w >= 0.0 && clip.z < 0.0);
-    let way = end - start;
-    // Distance to the border along each axis, as a fraction of the way.
-    let border = select(vec2(-1.0), vec2(1.0), way.xy >= vec2(0.0));
-    let reach = select(vec2(1e9), (border - start.xy) / way.xy, abs(way.xy) > vec2(1e-9));
-    let fraction = clamp(min(reach.x, reach.y), 0.0, 1.0);
-    return Track(start, start + fraction * way, recedes && fraction >= 1.0);
-}
-
-// A track on screen: (pixel, device depth) at its start, and the way to its end.
-struct Way {
-    start: vec3<f32>,
-    step: vec3<f32>,
-}
-
-fn way_of(track: Track) -> Way {
-    let start = vec3(pixel_from_ndc(track.start.xy), track.start.z);
-    let end = vec3(pixel_from_ndc(track.end.xy), track.end.z);
-    return Way(start, end - start);
-}
-
-fn scene_depth_on(way: Way, s: f32) -> f32 {
-    let pixel = vec2<i32>(way.start.xy + s * way.step.xy);
-    return nearest_scene_depth(clamp(pixel, vec2(0), vec2<i32>(frame.view_size) - 1));
-}
-
-// How far behind the scene the ray is at `s`, in device depth (reverse z).
-fn gap_on(way: Way, s: f32) -> f32 {
-    return scene_depth_on(way, s) - (way.start.z + s * way.step.z);
-}
-
-// Point between `low`, in front of the scene, and `high`, behind it, where the ray meets the scene.
-// Over a plane the gap is linear and one step along the line is enough; at a step in depth the
-// interval is halved.
-fn meeting_on(way: Way, low: vec2<f32>, high: vec2<f32>) -> f32 {
-    let slope = (high.y - low.y) / (high.x - low.x);
-    let zero = low.x - low.y / slope;
-    let gap = gap_on(way, zero);
-    if abs(gap) <= 0.1 * (high.y - low.y) {
-        return zero - gap / slope;
-    }
-    var ends = select(vec2(zero, high.x), vec2(low.x, zero), gap > 0.0);
-    for (var k = 0; k < HALVINGS; k += 1) {
-        let middle = 0.5 * (ends.x + ends.y);
-        ends = select(vec2(middle, ends.y), vec2(ends.x, middle), gap_on(way, middle) > 0.0);
-    }
-    return ends.y;
-}
-
-// The scene's colour where the ray meets its depth. A ray that meets nothing up to its vanishing
-// point shows what is on screen there: the sky, or whatever has no depth, such as glass. `straight`
-// is the pixel itself, for rays that are lost behind something near the eye.
-fn background(
-    straight: vec2<f32>, position: vec3<f32>, direction: vec3<f32>, starts_on_screen: bool,
-) -> vec4<f32> {
-    let track = track(position, direction);
-    let way = way_of(track);
-    let steps = clamp(ceil(length(way.step.xy) / STEP_PIXELS), 4.0, MAX_STEPS);
-    // (s, gap) where the ray was last in sight.
-    var before = vec2(0.0, gap_on(way, 0.0));
-    var hidden = false;
-    for (var i = 1.0; i <= steps; i += 1.0) {
-        let at = vec2(i / steps, gap_on(way, i / steps));
-        if at.y <= 0.0 {
-            before = at;
-            hidden = false;
-            continue;
-        }
-        let map = depth_map(track.start.xy);
-        let entry = view_depth(map, way.start.z + before.x * way.step.z);
-        let slack = 4.0 * surface.radius + 0.05 * entry;
-        // It is met if it lies within the step, not if it covers the ray from nearer the eye.
-        let scene_depth = at.y + way.start.z + at.x * way.step.z;
-        if view_depth(map, scene_depth) < entry - slack {
-            hidden = true;
-            continue;
-        }
-        if hidden {
-            // Somewhere behind the thing that covers the ray.
-            return color_at(way.start.xy + at.x * way.step.xy);
-        }
-        // At the start it may be behind already.
-        let low = vec2(before.x, min(before.y, -1e-9));
-        return color_at(way.start.xy + meeting_on(way, low, at) * way.step.xy);
-    }
-    let painted = painted_behind(position, direction);
-    if painted.is_there {
-        return painted.color;
-    }
-    if hidden {
-        return color_at(straight);
-    }
-    if track.vanishes && starts_on_screen {
-        return color_at(way.start.xy + way.step.xy);
-    }
-    let is_clear = lighting.environment_intensity <= 0.0;
-    return vec4(environment(direction), select(1.0, lighting.clear_color.a, is_clear));
-}
-
-// Premultiplied light from the liquid and of the background through it. Alpha is what the liquid
-// takes from light of no colour, over the alpha of the background.
-fn light(pixel: vec2<f32>, texel: vec2<i32>, exit: vec4<u32>, front: f32) -> vec4<f32> {
-    let uv = unpack2x16unorm(exit.x);
-    let ndc = uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
-    var behind: vec4<f32>;
-    if (exit.w & DIRECT) != 0u {
-        behind = color_at(pixel_from_ndc(ndc));
-    } else {
-        let start = view_from_device(ndc, bitcast<f32>(exit.y));
-        let direction = decode_normal(unpack2x16snorm(exit.z));
-        // Beyond the screen it is clamped to the border.
-        let is_on_screen = all(uv > vec2(0.0)) && all(uv < vec2(1.0));
-        behind = background(pixel, start, direction, is_on_screen);
-    }
-    let own = textureLoad(radiance, texel, 0).rgb;
-    let transmitted = transmitted_at(texel);
-    var color = own + transmitted * behind.rgb;
-#ifdef HAZE
-    // What is behind lies in haze as far as from the eye already, so that only the part of its light
-    // that the liquid takes is replaced by that of the haze before the liquid.
-    let is_outside = front < INSIDE_FRONT;
-    let position = select(vec3(0.0), view_from_device(ndc_from_pixel(pixel), front), is_outside);
-    let haze = haze_before(position, pixel / frame.view_size);
-    color = own * haze.transmitted + haze.added * (1.0 - transmitted) + transmitted * behind.rgb;
-#endif
-    let taken = 1.0 - dot(transmitted, vec3(1.0 / 3.0));
-    return vec4(color, mix(behind.a, 1.0, taken));
-}
-
-fn transmitted_at(texel: vec2<i32>) -> vec3<f32> {
-    return vec3(textureLoad(radiance, texel, 0).a, textureLoad(transmission, texel, 0).rg);
-}
-
-fn max3(v: vec3<f32>) -> f32 {
-    return max(v.x, max(v.y, v.z));
-}
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let pixel = vec2<i32>(pixel_from_camera(position));
     let texel = texel_at(pixel);
-    let exit = textureLoad(exits, texel, 0);
-    if (exit.w & THERE) == 0u {
+    var seen = Seen(light_of(pixel), depth_at(pixel));
+    var covered = 1.0;
+#ifdef COVERAGE
+    covered = dot(textureLoad(coverage, texel, 0), vec4(0.25));
+    if !is_lit(seen.color) && covered > 0.0 {
+        seen = beside(pixel);
+    }
+#endif
+    if !is_lit(seen.color) || covered <= 0.0 {
         discard;
     }
-    let bulk = textureLoad(bulk_layers, texel, 0).xy;
-    let spray = textureLoad(spray_layers, texel, 0).xy;
-    let front = max(bulk.x, spray.x);
-
-    var out: Output;
 #ifdef DENSE
-    if max3(transmitted_at(texel)) > 0.5 {
+    let transmitted = vec3(textureLoad(radiance, texel, 0).a, textureLoad(transmission, texel, 0).rg);
+    if max(transmitted.r, max(transmitted.g, transmitted.b)) > 0.5 {
         discard;
     }
 #endif
-#ifndef DEPTH_ALONE
-    out.color = light(vec2<f32>(pixel) + 0.5, texel, exit, front);
-#endif
-    out.depth = front;
-    if front >= INSIDE_FRONT {
-        // The eye is in the liquid: its far surface, or an opaque thing in it, is visible.
-        let layers = select(spray, bulk, bulk.x >= INSIDE_FRONT);
-        out.depth = max(select(0.0, -layers.y, has_back(layers)), nearest_scene_depth(pixel));
+    var out: Output;
+    out.depth = seen.depth;
+#ifdef DEPTH_ALONE
+    if covered < 0.5 {
+        discard;
     }
+#else
+    out.color = seen.color;
+#ifdef RESOLVE
+    if is_lit(light_of(pixel)) {
+        out.color = resolved(pixel, seen.color);
+    }
+#endif
+#ifdef COVERAGE
+    let behind = textureLoad(scene_color, pixel + vec2<i32>(frame.view_origin), 0);
+    out.color = mix(behind, out.color, covered);
+#endif
+#endif
     return out;
 }

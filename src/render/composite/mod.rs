@@ -3,6 +3,7 @@
 mod behind;
 mod pipeline;
 mod scene;
+mod shade;
 
 use bevy::{
     asset::embedded_asset,
@@ -14,22 +15,28 @@ use bevy::{
         Render, RenderApp, RenderSystems,
         camera::ExtractedCamera,
         render_phase::{AddRenderCommand, sort_phase_system},
-        render_resource::{CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp},
+        render_resource::{
+            BindGroup, CachedRenderPipelineId, PipelineCache, RenderPassDescriptor, StoreOp,
+        },
         renderer::{RenderContext, ViewQuery},
         view::{ViewDepthTexture, ViewTarget},
     },
+    shader::load_shader_library,
 };
 
 pub(super) use self::behind::{give_back, take_behind};
-pub(super) use self::pipeline::CompositePipeline;
-#[cfg(all(test, feature = "published"))]
-pub(super) use self::pipeline::{CompositeKey, CompositePart};
 use self::{
     behind::{BehindLiquid, ViewItems},
     scene::SceneColor,
 };
+pub(super) use self::{pipeline::CompositePipeline, shade::ShadePipeline};
+#[cfg(all(test, feature = "published"))]
+pub(super) use self::{
+    pipeline::{CompositeKey, CompositePart},
+    shade::ShadeKey,
+};
 use super::{
-    frame::{Frame, Kept, add_stage, timed},
+    frame::{Frame, Kept, Layers, add_stage, cleared, timed},
     lighting::ViewLighting,
     surface::{Surface, ViewSurfaces},
 };
@@ -38,7 +45,12 @@ use super::{
 pub(crate) const SPAN: &str = "fluid_composite";
 
 pub(super) fn plugin(app: &mut App) {
+    load_shader_library!(app, "background.wgsl");
+    load_shader_library!(app, "lit.wgsl");
+    load_shader_library!(app, "resolve.wgsl");
+    embedded_asset!(app, "shade.wgsl");
     embedded_asset!(app, "composite.wgsl");
+    add_stage::<ShadePipeline>(app);
     add_stage::<CompositePipeline>(app);
     scene::plugin(app);
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
@@ -54,7 +66,13 @@ pub(super) fn plugin(app: &mut App) {
     }
 }
 
-type Composited<'a> = (&'a Surface, &'a Frame, &'a Kept<CompositePipeline>);
+type Composited<'a> = (
+    &'a Surface,
+    &'a Frame,
+    &'a Layers,
+    &'a Kept<ShadePipeline>,
+    &'a Kept<CompositePipeline>,
+);
 
 /// The pass: all surfaces of the view, each composited over the previous ones.
 pub(super) fn composite(
@@ -91,7 +109,6 @@ pub(super) fn composite(
         let variant = surface.drawn.as_ref();
         variant.is_some_and(|variant| variant.debug_view.is_none())
     };
-    let light = (lighting, scene, target);
     timed(&mut ctx, SPAN, |ctx| {
         let mut changed = view.viewport;
         let mut any = false;
@@ -102,9 +119,6 @@ pub(super) fn composite(
             if !drawn(&surface) {
                 continue;
             }
-            let Some(pipeline) = surface.2.id(surface.0, |key| key.part.light()) else {
-                continue;
-            };
             if !any {
                 scene.keep(ctx, target, view.viewport);
                 any = true;
@@ -112,22 +126,28 @@ pub(super) fn composite(
             // Rays leave the surface's own rectangle, so all that has changed may be needed.
             scene.copy(ctx, target, changed, &cache);
             changed = surface.1.camera_rect();
+            let Some(scene) = scene.group(target) else {
+                continue;
+            };
+            shade(ctx, surface, (lighting, scene), &cache);
             let pass = RenderPassDescriptor {
                 label: Some(SPAN),
                 color_attachments: &[Some(target.get_color_attachment())],
                 depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
                 ..default()
             };
-            paint(ctx, pass, surface, pipeline, light, &cache);
+            let kept = surface.4.id(surface.0, |key| key.part.light());
+            paint(ctx, pass, surface, kept, (lighting, scene), &cache);
         }
         for surface in surfaces.iter_many(&view.surfaces).filter(drawn) {
-            if let Some(pipeline) = surface.2.id(surface.0, |key| !key.part.light()) {
+            let kept = surface.4.id(surface.0, |key| !key.part.light());
+            if let (Some(_), Some(scene)) = (kept, scene.group(target)) {
                 let pass = RenderPassDescriptor {
                     label: Some("fluid_composite_depth"),
                     depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
                     ..default()
                 };
-                paint(ctx, pass, surface, pipeline, light, &cache);
+                paint(ctx, pass, surface, kept, (lighting, scene), &cache);
             }
         }
         // Transparency that is independent of order, decals and soft particles read the prepass's
@@ -142,26 +162,48 @@ pub(super) fn composite(
     });
 }
 
+/// The light of a surface's pixels.
+fn shade(
+    ctx: &mut RenderContext,
+    (surface, frame, layers, kept, _): Composited,
+    (lighting, scene): (&ViewLighting, &BindGroup),
+    cache: &PipelineCache,
+) {
+    let (Some(pipeline), Some(group), Some((lighting, offset)), Some(target)) = (
+        kept.only(surface, cache),
+        kept.state.get(),
+        lighting.get(),
+        &layers.light,
+    ) else {
+        return;
+    };
+    let targets = [cleared(target, [0.0, 0.0, 0.0, -1.0])];
+    let mut pass = frame.begin(ctx, "fluid_shade", &targets, None, pipeline);
+    pass.set_bind_group(1, group, &[]);
+    pass.set_bind_group(2, lighting, &offset);
+    pass.set_bind_group(3, scene, &[]);
+    frame.draw_tiles(&mut pass);
+}
+
+/// That light, or its depth, into the camera's targets.
 fn paint(
     ctx: &mut RenderContext,
     pass: RenderPassDescriptor,
-    (_, frame, kept): Composited,
-    pipeline: CachedRenderPipelineId,
-    (lighting, scene, target): (&ViewLighting, &SceneColor, &ViewTarget),
+    (_, frame, _, _, kept): Composited,
+    pipeline: Option<CachedRenderPipelineId>,
+    (lighting, scene): (&ViewLighting, &BindGroup),
     cache: &PipelineCache,
 ) {
-    let (Some(pipeline), Some(group), Some((light, light_offset)), Some(scene)) = (
-        cache.get_render_pipeline(pipeline),
-        kept.state.get(),
-        lighting.get(),
-        scene.group(target),
-    ) else {
+    let pipeline = pipeline.and_then(|id| cache.get_render_pipeline(id));
+    let (Some(pipeline), Some(group), Some((lighting, offset))) =
+        (pipeline, kept.state.get(), lighting.get())
+    else {
         return;
     };
     let mut pass = ctx.begin_tracked_render_pass(pass);
     frame.enter(&mut pass, pipeline);
-    pass.set_bind_group(1, group, &[]);
-    pass.set_bind_group(2, light, &light_offset);
+    pass.set_bind_group(1, group, &[kept.offset.bytes()]);
+    pass.set_bind_group(2, lighting, &offset);
     pass.set_bind_group(3, scene, &[]);
     frame.draw_tiles(&mut pass);
 }

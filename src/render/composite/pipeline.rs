@@ -5,39 +5,75 @@ use bevy::{
     prelude::*,
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, MultisampleState,
-        RenderPipelineDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipeline,
-        TextureFormat, TextureSampleType,
-        binding_types::{sampler, texture_2d},
+        RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, TextureFormat,
+        binding_types::uniform_buffer,
     },
+    shader::ShaderDefVal,
 };
 
-use super::SPAN;
+use super::{SPAN, scene::SceneColorLayout, shade::ShadeKey};
 use crate::render::{
     frame::{
-        FrameLayout, Group, Input, Inputs, Layers, NoUniform, Stage,
+        FrameLayout, Group, Input, Inputs, Layers, Stage,
         pipelines::{Tiles, defs, depth_state, fragment, tile_pipeline, unfiltered},
     },
     lighting::LightingLayout,
+    refract::{GpuTracing, RefractKey, layer_defs},
     surface::{Surface, Variant},
 };
+use crate::settings::Antialiasing;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct CompositeKey {
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
     pub(crate) part: CompositePart,
-    /// Whether the view has fog, and an atmosphere.
-    pub(crate) fog: bool,
-    pub(crate) atmosphere: bool,
-    /// Whether there are other surfaces, which may be visible through this one.
-    pub(crate) several: bool,
+    /// Whether pixels that the liquid covers in part are blended with the background.
+    pub(crate) covers: bool,
+    /// Whether there are bulk and spray.
+    pub(crate) bulk: bool,
+    pub(crate) spray: bool,
+    /// How the light of pixels is averaged whose neighbours differ.
+    pub(crate) resolve: Option<ResolveKey>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ResolveKey {
+    /// Through each of them, besides the first.
+    pub(crate) count: u32,
+    pub(crate) rays: RefractKey,
+    pub(crate) background: ShadeKey,
+}
+
+impl ResolveKey {
+    fn of(variant: &Variant) -> Option<Self> {
+        let Antialiasing::Full { rays } = variant.plan.antialiasing else {
+            return None;
+        };
+        Some(Self {
+            count: rays,
+            rays: RefractKey::new(&variant.plan, &variant.settings),
+            background: ShadeKey::of(variant),
+        })
+    }
+
+    fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
+        let own = [
+            "RESOLVE".into(),
+            ShaderDefVal::UInt("RAYS".into(), self.count),
+        ];
+        let rays = self.rays.shader_defs();
+        own.into_iter()
+            .chain(rays)
+            .chain(self.background.shader_defs())
+    }
 }
 
 /// What is written. If surfaces wrote their depth at once, one painted later would be cut off
-/// where it is behind.
+/// where it is behind; and pixels that are hardly covered have light, but no depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum CompositePart {
-    /// Light and depth: the only surface.
+    /// Light and depth: the only surface, with hard edges.
     Whole,
     /// Light alone.
     Light,
@@ -63,14 +99,12 @@ pub(crate) struct CompositePipeline {
     frame: FrameLayout,
     lighting: BindGroupLayoutDescriptor,
     layout: BindGroupLayoutDescriptor,
-    /// The scene's colour as it is, and as it was before any surface.
-    pub(super) scene: BindGroupLayoutDescriptor,
+    scene: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
 
 impl FromWorld for CompositePipeline {
     fn from_world(world: &mut World) -> Self {
-        let filtered = || texture_2d(TextureSampleType::Float { filterable: true });
         Self {
             frame: world.resource::<FrameLayout>().clone(),
             lighting: world.resource::<LightingLayout>().0.clone(),
@@ -81,23 +115,18 @@ impl FromWorld for CompositePipeline {
                     (
                         unfiltered(),
                         unfiltered(),
-                        texture_2d(TextureSampleType::Uint),
+                        unfiltered(),
+                        unfiltered(),
+                        unfiltered(),
+                        uniform_buffer::<GpuTracing>(true),
+                        unfiltered(),
+                        unfiltered(),
                         unfiltered(),
                         unfiltered(),
                     ),
                 ),
             ),
-            scene: BindGroupLayoutDescriptor::new(
-                "fluid_scene_color_layout",
-                &BindGroupLayoutEntries::sequential(
-                    ShaderStages::FRAGMENT,
-                    (
-                        filtered(),
-                        filtered(),
-                        sampler(SamplerBindingType::Filtering),
-                    ),
-                ),
-            ),
+            scene: world.resource::<SceneColorLayout>().0.clone(),
             shader: load_embedded_asset!(world, "composite.wgsl"),
         }
     }
@@ -107,13 +136,15 @@ impl SpecializedRenderPipeline for CompositePipeline {
     type Key = CompositeKey;
 
     fn specialize(&self, key: CompositeKey) -> RenderPipelineDescriptor {
-        let shader_defs = defs([
+        let mut shader_defs = defs([
             ("DEPTH_ALONE", !key.part.light()),
-            ("SEVERAL", key.several),
-            ("HAZE", key.fog || key.atmosphere),
-            ("ATMOSPHERE", key.atmosphere),
+            ("COVERAGE", key.covers),
             ("DENSE", key.part == CompositePart::DenseDepth),
         ]);
+        match &key.resolve {
+            Some(resolve) => shader_defs.extend(resolve.shader_defs()),
+            None => shader_defs.extend(layer_defs(key.bulk, key.spray)),
+        }
         let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
         let layouts = [&self.layout, &self.lighting, &self.scene].map(Clone::clone);
         RenderPipelineDescriptor {
@@ -136,11 +167,12 @@ impl SpecializedRenderPipeline for CompositePipeline {
 
 impl Stage for CompositePipeline {
     const LABEL: &'static str = SPAN;
-    type Uniform = NoUniform;
+    type Uniform = GpuTracing;
     type State = Group;
 
     fn keys(&self, variant: &Variant) -> Vec<CompositeKey> {
-        let parts: &[_] = match (variant.plan.index_one, variant.several) {
+        let covers = variant.plan.antialiasing.covers();
+        let parts: &[_] = match (variant.plan.index_one, variant.several || covers) {
             (true, _) => &[CompositePart::Light, CompositePart::DenseDepth],
             (false, true) => &[CompositePart::Light, CompositePart::Depth],
             (false, false) => &[CompositePart::Whole],
@@ -149,21 +181,31 @@ impl Stage for CompositePipeline {
             format: variant.format,
             samples: variant.samples,
             part,
-            fog: variant.fog,
-            atmosphere: variant.atmosphere,
-            several: variant.several,
+            covers,
+            bulk: variant.plan.bulk,
+            spray: variant.plan.spray,
+            resolve: ResolveKey::of(variant).filter(|_| part.light()),
         };
         parts.iter().map(key).collect()
     }
 
+    fn uniform(surface: &Surface) -> Option<GpuTracing> {
+        GpuTracing::of(surface)
+    }
+
     fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
-        let refracted = [
+        let lit = [
+            inputs.or_nothing(&layers.bulk),
+            inputs.or_nothing(&layers.bulk_normals),
+            inputs.or_nothing(&layers.spray),
+            inputs.or_nothing(&layers.spray_normals),
+            inputs.or_nothing(&layers.thickness),
+            inputs.uniform.clone(),
+            Input::texture(layers.light.as_ref()),
+            inputs.or_nothing(&layers.coverage),
             Input::texture(layers.radiance.as_ref()),
             Input::texture(layers.transmission.as_ref()),
-            Input::texture(layers.exits.as_ref()),
-            inputs.or_nothing(&layers.bulk),
-            inputs.or_nothing(&layers.spray),
         ];
-        group.prepare(inputs.gpu, SPAN, &self.layout, &refracted);
+        group.prepare(inputs.gpu, SPAN, &self.layout, &lit);
     }
 }

@@ -5,20 +5,22 @@ use bevy::{
     core_pipeline::blit::{BlitPipeline, BlitPipelineKey},
     prelude::*,
     render::{
-        Render, RenderApp, RenderSystems,
+        Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{
-            BindGroup, CachedRenderPipelineId, Extent3d, LoadOp, Operations, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, SpecializedRenderPipelines, StoreOp,
-            TextureViewId,
+            BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
+            Extent3d, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, SamplerBindingType, ShaderStages, SpecializedRenderPipelines,
+            StoreOp, TextureSampleType, TextureViewId,
+            binding_types::{sampler, texture_2d},
         },
         renderer::RenderContext,
         view::ViewTarget,
     },
 };
 
-use super::{SPAN, pipeline::CompositePipeline};
+use super::SPAN;
 use crate::render::{
-    frame::{FrameLayout, Gpu, Group, Input, Target, ensure},
+    frame::{FrameLayout, FrameStartup, Gpu, Group, Input, Target, ensure},
     surface::{Surface, SurfaceSystems, ViewSurfaces, reasons::Waiting},
 };
 
@@ -41,10 +43,30 @@ struct Side {
     scene: Group,
 }
 
+/// The layout of the group that holds the scene's colour as it is, and as it was before any surface.
+#[derive(Resource)]
+pub(super) struct SceneColorLayout(pub(super) BindGroupLayoutDescriptor);
+
+fn init_layout(mut commands: Commands) {
+    let filtered = || texture_2d(TextureSampleType::Float { filterable: true });
+    commands.insert_resource(SceneColorLayout(BindGroupLayoutDescriptor::new(
+        "fluid_scene_color_layout",
+        &BindGroupLayoutEntries::sequential(
+            ShaderStages::FRAGMENT,
+            (
+                filtered(),
+                filtered(),
+                sampler(SamplerBindingType::Filtering),
+            ),
+        ),
+    )));
+}
+
 pub(super) fn plugin(app: &mut App) {
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
+    render_app.add_systems(RenderStartup, init_layout.in_set(FrameStartup));
     render_app.add_systems(
         Render,
         (
@@ -86,7 +108,7 @@ fn wait_for_blit(
 
 fn prepare(
     mut views: Query<(&ViewSurfaces, &ViewTarget, &mut SceneColor)>,
-    pipeline: Res<CompositePipeline>,
+    layout: Res<SceneColorLayout>,
     blit: Res<BlitPipeline>,
     frame: Res<FrameLayout>,
     gpu: Gpu,
@@ -115,7 +137,7 @@ fn prepare(
             side.scene.prepare(
                 &gpu,
                 "fluid_scene_color",
-                &pipeline.scene,
+                &layout.0,
                 &[
                     Input::view(copy),
                     Input::view(before),

@@ -28,7 +28,15 @@ struct EllipsoidVertex {
     // Form 0: projected centre in pixels and device depth.
     @location(3) @interpolate(flat) center: vec3<f32>,
     @location(4) @interpolate(flat) form: u32,
+#ifdef COVERAGE
+    // Form 0: the outline, where this is zero: x + yz · o + (o.x², o.x o.y, o.y²) · `bend`, for the
+    // offset o from the projected centre in pixels. It is 1 − (distance / radius)² for a circle.
+    @location(5) @interpolate(flat) outline: vec3<f32>,
+    @location(6) @interpolate(flat) bend: vec3<f32>,
+#endif
 }
+
+const PI: f32 = 3.14159265;
 
 struct Intersection {
     hit: bool,
@@ -128,7 +136,12 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
     // splat smaller than a pixel still covers the pixel that holds it.
     let pixel = 2.0 / frame.view_size;
     let size = vec2(bound_x.y - bound_x.x, bound_y.y - bound_y.x);
+#ifdef COVERAGE
+    // Every pixel of which it covers a part.
+    let slack = 0.52 * pixel;
+#else
     let slack = select(vec2(0.02), vec2(0.52), size < pixel) * pixel;
+#endif
     let low = max(vec2(bound_x.x, bound_y.x) - slack, vec2(-1.5));
     let high = min(vec2(bound_x.y, bound_y.y) + slack, vec2(1.5));
     let corner_ndc = select(low, high, vec2((corner & 1u) == 1u, (corner & 2u) == 2u));
@@ -171,6 +184,23 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
         out.y = vec4(dy, dot(perspective, dy));
         out.d = vec4(sphere[2], dot(perspective, sphere[2]));
         out.center = vec3(pixel_from_ndc(device.xy), device.z);
+#ifdef COVERAGE
+        // The form at the point of a line of sight that is nearest to the centre.
+        let middle = vec4(0.0, 0.0, 0.0, 1.0);
+        let dd = form(out.d, out.d);
+        let along = vec3(form(out.x, out.d), form(out.y, out.d), form(middle, out.d));
+        let ratio = along / dd;
+        out.outline = -vec3(
+            form(middle, middle) - along.z * ratio.z,
+            2.0 * (form(middle, out.x) - along.z * ratio.x),
+            2.0 * (form(middle, out.y) - along.z * ratio.y),
+        );
+        out.bend = -vec3(
+            form(out.x, out.x) - along.x * ratio.x,
+            2.0 * (form(out.x, out.y) - along.x * ratio.y),
+            form(out.y, out.y) - along.y * ratio.y,
+        );
+#endif
     }
     return out;
 }
@@ -239,6 +269,28 @@ fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     out.back_normal = -polar_normal(in, nearest - half_chord * in.d, ndc, back);
     return out;
 }
+
+#ifdef COVERAGE
+// How much of the pixel's quarters an ellipsoid of form 0 covers, by the distance of their middles
+// from its outline.
+fn coverage_of(in: EllipsoidVertex) -> vec4<f32> {
+    let offset = pixel_from_texture(in.position) - in.center.xy;
+    let x = offset.x + vec4(-0.25, 0.25, -0.25, 0.25);
+    let y = offset.y + vec4(-0.25, -0.25, 0.25, 0.25);
+    let value = in.outline.x + x * (in.outline.y + in.bend.x * x + in.bend.y * y)
+        + y * (in.outline.z + in.bend.z * y);
+    let slope_x = in.outline.y + 2.0 * in.bend.x * x + in.bend.y * y;
+    let slope_y = in.outline.z + 2.0 * in.bend.z * y + in.bend.y * x;
+    let slope = sqrt(slope_x * slope_x + slope_y * slope_y);
+    // Of a circle of radius R, `from_center` is the distance from its centre over R and the slope is
+    // twice that over R.
+    let from_center = sqrt(max(1.0 - value, vec4(1e-6)));
+    let distance = 2.0 * from_center * (1.0 - from_center) / max(slope, vec4(1e-6));
+    // Quarters are half a pixel wide; no more of one is covered than the ellipsoid's area.
+    let area = 4.0 * PI * inverseSqrt(max(in.bend.x * in.bend.z - 0.25 * in.bend.y * in.bend.y, 1e-12));
+    return clamp(0.5 + 2.0 * distance, vec4(0.0), vec4(min(area, 1.0)));
+}
+#endif
 
 // Where a ray passes an ellipsoid, in metres from the ray's start.
 struct Chord {

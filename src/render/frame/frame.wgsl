@@ -26,5 +26,5 @@ struct FluidFrame {
 @group(0) @binding(2) var<uniform> surface: GpuSurface;
 // The opaque scene's depth. Multisampled: (nearest, farthest) of a pixel's samples.
 @group(0) @binding(3) var scene_depth: texture_2d<f32>;
-// For each tile, whether it holds (bulk, spray).
+// For each tile, whether it holds (bulk, any liquid).
 @group(0) @binding(4) var tiles: texture_2d<f32>;

@@ -26,14 +26,19 @@ pub(crate) const TRANSMISSION_FORMAT: TextureFormat = TextureFormat::Rg16Float;
 /// their slopes along x between the two halves of a separable fit, as bits of f32.
 pub(crate) const EXIT_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
-/// 1 where there is (bulk, spray).
+/// How much of each quarter of a pixel is covered.
+pub(crate) const COVERAGE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Light from the liquid and through it.
+pub(crate) const LIGHT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+/// 1 where there is (bulk, any liquid).
 pub(super) const TILE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
 
 /// The textures of a surface, which hold the part of the view that it may cover.
 ///
 /// Layers hold (device depth of the front, −device depth of the back); (0, −2) means nothing. A
 /// front of exactly 1 means that the ray starts inside the liquid.
-// A second record of exit rays, or the coverage of pixels, would be one more texture here.
+// A second record of exit rays would be one more texture here.
 #[derive(Component, Default)]
 pub struct Layers {
     size: UVec2,
@@ -50,6 +55,11 @@ pub struct Layers {
     pub(crate) radiance: Option<Target>,
     pub(crate) transmission: Option<Target>,
     pub(crate) exits: Option<Target>,
+    /// How much of each pixel's quarters is covered: upper left, upper right, lower left, lower
+    /// right.
+    pub(crate) coverage: Option<Target>,
+    /// Light from the liquid and through it, and alpha; negative where there is no liquid.
+    pub(crate) light: Option<Target>,
     /// The accumulated path length through all particles.
     pub(crate) thickness: Option<Target>,
     /// The number of splats, if a debug view shows it.
@@ -102,6 +112,12 @@ impl Layers {
     /// Exit rays and flags, in the layout of `pack_exit` in `refract.wgsl`.
     pub fn exits(&self) -> Option<&Texture> {
         self.exits.as_ref().map(|it| &it.texture)
+    }
+
+    /// How much of the quarters of each pixel is covered (upper left, upper right, lower left, lower
+    /// right), if edges are antialiased.
+    pub fn coverage(&self) -> Option<&Texture> {
+        self.coverage.as_ref().map(|it| &it.texture)
     }
 
     /// The accumulated path length through all particles in m, if it is summed up.
@@ -172,6 +188,9 @@ impl Layers {
         let label = "fluid_transmission";
         keep(&mut self.transmission, true, label, TRANSMISSION_FORMAT);
         keep(&mut self.exits, true, "fluid_exits", EXIT_FORMAT);
+        let (wanted, label) = (plan.antialiasing.covers(), "fluid_coverage");
+        keep(&mut self.coverage, wanted, label, COVERAGE_FORMAT);
+        keep(&mut self.light, true, "fluid_light", LIGHT_FORMAT);
         keep(
             &mut self.thickness,
             plan.accumulated,

@@ -31,7 +31,10 @@ use bevy::{
 
 pub(crate) use self::{
     groups::{Gpu, Group, Input},
-    layers::{EXIT_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT, TRANSMISSION_FORMAT},
+    layers::{
+        COVERAGE_FORMAT, EXIT_FORMAT, LIGHT_FORMAT, NORMAL_FORMAT, RADIANCE_FORMAT,
+        TRANSMISSION_FORMAT,
+    },
     pass::{Frame, cleared},
     stage::{Inputs, Kept, NoUniform, Stage, add_stage, timed},
     targets::{Placeholder, Target, ensure},

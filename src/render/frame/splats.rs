@@ -242,7 +242,12 @@ impl Splats<'_, '_> {
         pass: SplatPass,
         classes: &[Class],
     ) {
-        let SplatPass { color, depth, .. } = pass;
+        let SplatPass {
+            color,
+            coverage,
+            depth,
+            ..
+        } = pass;
         let pipeline = pass
             .pipeline
             .and_then(|id| self.cache.get_render_pipeline(id));
@@ -252,8 +257,12 @@ impl Splats<'_, '_> {
         if color.is_none() && depth.is_none() {
             return;
         }
-        let colors = [color];
-        let colors = &colors[usize::from(colors[0].is_none())..];
+        let colors = [color, coverage];
+        let colors = match &colors {
+            [None, ..] => &[],
+            [_, None] => &colors[..1],
+            both => both,
+        };
         let mut recorded = frame.begin(ctx, pass.label, colors, depth, pipeline);
         if let Some(finished) = pass.finished {
             recorded.set_bind_group(2, finished, &[]);
@@ -270,6 +279,8 @@ pub(crate) struct SplatPass<'a> {
     pub(crate) label: &'static str,
     pub(crate) pipeline: Option<CachedRenderPipelineId>,
     pub(crate) color: Option<RenderPassColorAttachment<'a>>,
+    /// Written as well, where pipelines do.
+    pub(crate) coverage: Option<RenderPassColorAttachment<'a>>,
     pub(crate) depth: Option<RenderPassDepthStencilAttachment<'a>>,
     /// Group 2: finished layers that splats are compared with.
     pub(crate) finished: Option<&'a BindGroup>,

@@ -45,7 +45,7 @@ impl FromWorld for TilePipeline {
                 "fluid_tiles_layout",
                 &BindGroupLayoutEntries::sequential(
                     ShaderStages::FRAGMENT,
-                    (unfiltered(), unfiltered()),
+                    (unfiltered(), unfiltered(), unfiltered()),
                 ),
             ),
             shader: load_embedded_asset!(world, "mark_tiles.wgsl"),
@@ -54,11 +54,15 @@ impl FromWorld for TilePipeline {
 }
 
 impl SpecializedRenderPipeline for TilePipeline {
-    /// Whether there are bulk and spray.
-    type Key = [bool; 2];
+    /// Whether there are bulk, spray and coverage.
+    type Key = [bool; 3];
 
-    fn specialize(&self, [bulk, spray]: [bool; 2]) -> RenderPipelineDescriptor {
-        let mut shader_defs = defs([("BULK_LAYERS", bulk), ("SPRAY_LAYERS", spray)]);
+    fn specialize(&self, [bulk, spray, covers]: [bool; 3]) -> RenderPipelineDescriptor {
+        let mut shader_defs = defs([
+            ("BULK_LAYERS", bulk),
+            ("SPRAY_LAYERS", spray),
+            ("COVERAGE", covers),
+        ]);
         shader_defs.push(tile_size());
         RenderPipelineDescriptor {
             label: Some("fluid_tiles_pipeline".into()),
@@ -75,14 +79,16 @@ impl Stage for TilePipeline {
     type Uniform = NoUniform;
     type State = Group;
 
-    fn keys(&self, variant: &Variant) -> Vec<[bool; 2]> {
-        vec![[variant.plan.bulk, variant.plan.spray]]
+    fn keys(&self, variant: &Variant) -> Vec<[bool; 3]> {
+        let plan = &variant.plan;
+        vec![[plan.bulk, plan.spray, plan.antialiasing.covers()]]
     }
 
     fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
         let layers = [
             inputs.or_nothing(layers.splatted()),
             inputs.or_nothing(&layers.spray),
+            inputs.or_nothing(&layers.coverage),
         ];
         group.prepare(inputs.gpu, SPAN, &self.layout, &layers);
     }

@@ -41,21 +41,21 @@ pub(crate) const SPAN: &str = "fluid_refract";
 
 /// `Tracing` in `layers.wgsl`.
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
-pub(super) struct GpuTracing {
+pub(crate) struct GpuTracing {
     coarse_samples: u32,
     contact: f32,
 }
 
 impl GpuTracing {
-    /// For particles of `radius` in view units.
-    fn new(settings: &ScreenSpaceFluid, radius: f32) -> Self {
-        Self {
+    pub(crate) fn of(surface: &Surface) -> Option<Self> {
+        let settings = &surface.drawn.as_ref()?.settings;
+        Some(Self {
             coarse_samples: match settings.search {
                 Search::Secant => 0,
                 Search::Bracketed { coarse_samples } => coarse_samples,
             },
-            contact: settings.contact * radius,
-        }
+            contact: settings.contact * surface.uniform.radius,
+        })
     }
 }
 
@@ -89,9 +89,8 @@ impl RefractKey {
 
     /// The conditions and numbers that the shader is compiled with.
     pub(crate) fn shader_defs(&self) -> Vec<ShaderDefVal> {
-        let mut shader_defs = defs([
-            ("BULK_LAYERS", self.bulk),
-            ("SPRAY_LAYERS", self.spray),
+        let mut shader_defs = layer_defs(self.bulk, self.spray);
+        shader_defs.extend(defs([
             ("INDEX_ONE", self.index_one),
             ("SECANT", self.secant),
             ("SCHLICK", self.schlick),
@@ -100,12 +99,17 @@ impl RefractKey {
             ("EXTINCTION", self.terms.extinction),
             ("SCATTERING", self.terms.scattering),
             ("SOURCE", self.terms.source()),
-        ]);
+        ]));
         shader_defs.push(ShaderDefVal::UInt("INTERFACES".into(), self.interfaces));
         let both = self.bulk && self.spray;
         shader_defs.push(ShaderDefVal::Bool("BOTH_CLASSES".into(), both));
         shader_defs
     }
+}
+
+/// For shaders that read layers: which of them there are.
+pub(crate) fn layer_defs(bulk: bool, spray: bool) -> Vec<ShaderDefVal> {
+    defs([("BULK_LAYERS", bulk), ("SPRAY_LAYERS", spray)])
 }
 
 #[derive(Resource)]
@@ -122,6 +126,7 @@ pub(super) fn plugin(app: &mut App) {
     load_shader_library!(app, "layers.wgsl");
     load_shader_library!(app, "track.wgsl");
     load_shader_library!(app, "search.wgsl");
+    load_shader_library!(app, "trace.wgsl");
     embedded_asset!(app, "refract.wgsl");
     add_stage::<RefractPipeline>(app);
 }
@@ -179,8 +184,7 @@ impl Stage for RefractPipeline {
     }
 
     fn uniform(surface: &Surface) -> Option<GpuTracing> {
-        let settings = &surface.drawn.as_ref()?.settings;
-        Some(GpuTracing::new(settings, surface.uniform.radius))
+        GpuTracing::of(surface)
     }
 
     fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {

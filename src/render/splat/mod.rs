@@ -6,7 +6,10 @@ mod pipeline;
 use bevy::{
     asset::embedded_asset,
     prelude::*,
-    render::renderer::{RenderContext, ViewQuery},
+    render::{
+        render_resource::LoadOp,
+        renderer::{RenderContext, ViewQuery},
+    },
 };
 
 #[cfg(all(test, feature = "published"))]
@@ -41,6 +44,10 @@ pub(super) fn splat(
     timed(&mut ctx, SPAN, |ctx| {
         let surfaces = surfaces.iter_many(&view.into_inner().surfaces);
         for (surface, frame, layers, kept) in surfaces {
+            let mut coverage = layers
+                .coverage
+                .as_ref()
+                .and_then(|it| cleared(it, [0.0; 4]));
             let id = |output| kept.id(surface, |key| key.output == output);
             let of = (surface, frame);
             for (class, target) in [
@@ -56,9 +63,14 @@ pub(super) fn splat(
                         label: SPAN,
                         pipeline: blended,
                         color: cleared(target, NO_LAYERS),
+                        coverage: coverage.clone(),
                         ..default()
                     };
                     splats.record(ctx, of, pass, &[class]);
+                    // The next class adds to it.
+                    if let Some(coverage) = &mut coverage {
+                        coverage.ops.load = LoadOp::Load;
+                    }
                 } else {
                     let depths = [SplatOutput::FrontDepth, SplatOutput::BackDepth];
                     let pipelines = (depths.map(id), id(SplatOutput::Merge));
@@ -66,6 +78,13 @@ pub(super) fn splat(
                         .record(ctx, (&splats, class), of, target, pipelines);
                 }
             }
+            let pass = SplatPass {
+                label: SPAN,
+                pipeline: id(SplatOutput::Coverage),
+                color: coverage,
+                ..default()
+            };
+            splats.record(ctx, of, pass, &[Class::Bulk, Class::Spray]);
             // For the debug view that shows it.
             let counted = kept.id(surface, |key| matches!(key.output, SplatOutput::Count(_)));
             let pass = SplatPass::sum(SPAN, &layers.overdraw, counted);

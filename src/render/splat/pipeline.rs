@@ -12,7 +12,7 @@ use bevy::{
 use super::{
     super::{
         frame::{
-            FrameLayout, Inputs, Layers, NoUniform, Stage,
+            COVERAGE_FORMAT, FrameLayout, Inputs, Layers, NoUniform, Stage,
             pipelines::{MAX_BLEND, SUM_BLEND, defs, depth_state, fragment},
             splats::{SplatLayouts, splat_pipeline},
             support::{FluidSupport, LAYER_FORMAT},
@@ -37,6 +37,8 @@ pub(crate) enum SplatOutput {
     BackDepth,
     /// Both depths, from two textures of them.
     Merge,
+    /// The coverage alone.
+    Coverage,
     /// The number of splats, summed up in a texture of this format.
     Count(TextureFormat),
 }
@@ -48,6 +50,8 @@ pub(crate) struct SplatKey {
     /// Whether some may be cut by the near plane. Usually none is, and without the code for cut
     /// splats the others are drawn in half the time.
     pub(crate) cut: bool,
+    /// Whether the coverage is written with depths.
+    pub(crate) covers: bool,
 }
 
 #[derive(Resource)]
@@ -77,7 +81,12 @@ impl FromWorld for SplatPipeline {
 impl SpecializedRenderPipeline for SplatPipeline {
     type Key = SplatKey;
 
-    fn specialize(&self, SplatKey { output, cut }: SplatKey) -> RenderPipelineDescriptor {
+    fn specialize(&self, key: SplatKey) -> RenderPipelineDescriptor {
+        let SplatKey {
+            output,
+            cut,
+            covers,
+        } = key;
         let shader_defs = defs([
             (
                 "MAX_BLEND",
@@ -87,9 +96,15 @@ impl SpecializedRenderPipeline for SplatPipeline {
             ("DEPTH_BACK", output == SplatOutput::BackDepth),
             ("COUNT", matches!(output, SplatOutput::Count(_))),
             ("NONE_CUT", !cut),
+            ("COVERAGE", covers),
+            ("COVERAGE_ALONE", output == SplatOutput::Coverage),
         ]);
         let (formats, blend, compare): (&[_], _, _) = match output {
-            SplatOutput::Layers | SplatOutput::Fronts => (&[LAYER_FORMAT], MAX_BLEND, None),
+            SplatOutput::Layers | SplatOutput::Fronts => {
+                let formats = &[LAYER_FORMAT, COVERAGE_FORMAT];
+                (&formats[..1 + usize::from(covers)], MAX_BLEND, None)
+            }
+            SplatOutput::Coverage => (&[COVERAGE_FORMAT], MAX_BLEND, None),
             SplatOutput::FrontDepth => (&[], MAX_BLEND, Some(CompareFunction::Greater)),
             SplatOutput::BackDepth => (&[], MAX_BLEND, Some(CompareFunction::Less)),
             SplatOutput::Count(format) => (&[format], SUM_BLEND, None),
@@ -97,8 +112,8 @@ impl SpecializedRenderPipeline for SplatPipeline {
         };
         let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(blend));
         if output == SplatOutput::Fronts {
-            for target in fragment.targets.iter_mut().flatten() {
-                target.write_mask = ColorWrites::RED;
+            if let Some(Some(layers)) = fragment.targets.first_mut() {
+                layers.write_mask = ColorWrites::RED;
             }
         }
         RenderPipelineDescriptor {
@@ -129,12 +144,20 @@ impl Stage for SplatPipeline {
             (false, false) => &[SplatOutput::FrontDepth],
         };
         let merge = (!self.max_blend).then_some(SplatOutput::Merge);
+        let covers = plan.antialiasing.covers();
+        let coverage = (covers && !self.max_blend).then_some(SplatOutput::Coverage);
         let counted = variant.debug_view == Some(FluidDebugView::Overdraw);
         let count = counted.then_some(SplatOutput::Count(self.sum_format));
-        let outputs = layers.iter().copied().chain(merge).chain(count);
+        let outputs = layers.iter().copied().chain(merge);
+        let outputs = outputs.chain(coverage).chain(count);
         let key = |output| SplatKey {
             output,
             cut: plan.cut && output != SplatOutput::Merge,
+            covers: covers
+                && matches!(
+                    output,
+                    SplatOutput::Layers | SplatOutput::Fronts | SplatOutput::Coverage
+                ),
         };
         outputs.map(key).collect()
     }

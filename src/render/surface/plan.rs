@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use crate::{
     material::{FluidMaterial, Thickness},
     medium::Medium,
-    settings::{ScreenSpaceFluid, Smoothing},
+    settings::{Antialiasing, ScreenSpaceFluid, Smoothing},
 };
 
 /// The properties of a surface in a view that are known before anything is drawn.
@@ -56,6 +56,8 @@ pub struct Plan {
     pub opaque: bool,
     /// The terms of the medium that are not zero.
     pub terms: MediumTerms,
+    /// How edges and details are antialiased.
+    pub antialiasing: Antialiasing,
 }
 
 impl Plan {
@@ -155,6 +157,13 @@ pub fn plan(input: &PlanInput) -> Option<Plan> {
             MediumTerms::of(&material.medium)
         } else {
             MediumTerms::ALL
+        },
+        antialiasing: match input.settings.antialiasing {
+            // Soft rims have no edge.
+            _ if accumulated => Antialiasing::None,
+            // Rays that go straight on do not part.
+            Antialiasing::Full { .. } if index_one => Antialiasing::Edges,
+            wanted => wanted,
         },
     })
 }
