@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --package fluid_benches --bench aliasing -- --out DIR`, with `--scene NAME`,
 //! `--method NAME`, `--size WxH` and `--jitters N` for a part, and `--still` for no moving camera.
-//! Prints a line for each scene and method; the folder gets the pictures, their truths, maps of the
+//! With `--truths DIR` the truths are kept there: the next run, after a change of how pictures are
+//! antialiased, draws its own pictures alone. Prints a line for each scene and method; the folder gets the pictures, their truths, maps of the
 //! errors, and crops.
 
 use std::process::ExitCode;

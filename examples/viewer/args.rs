@@ -59,6 +59,10 @@ pub(crate) struct Args {
     /// Frames to render; statistics are medians over them
     #[arg(long, default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) frames: u32,
+    /// Pictures in one, the camera turned a tenth of a degree from each to the next: what sparkles
+    /// in motion differs between them
+    #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) orbit: u32,
     /// Write a picture (PNG) instead of opening a window
     #[arg(long, value_parser = png)]
     pub(crate) out: Option<PathBuf>,

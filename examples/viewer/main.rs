@@ -9,15 +9,14 @@
 mod args;
 mod scene;
 mod stats;
+mod strip;
 
 use std::process::ExitCode;
 
 use anyhow::{anyhow, ensure};
 use bevy::prelude::*;
 use bevy_fluid::recording::ParticleFrame;
-use fluid_stage::{
-    PendingPicture, StagePlugins, capture, headless_app, parse_args, set_time_step, settle,
-};
+use fluid_stage::{PendingPicture, StagePlugins, headless_app, parse_args, set_time_step, settle};
 
 use crate::{args::Args, scene::ScenePlugin};
 
@@ -69,9 +68,8 @@ fn run(args: &Args) -> anyhow::Result<ExitCode> {
     settle(&mut app)?;
     set_time_step(&mut app, std::time::Duration::from_secs_f64(1.0 / 60.0));
     let shape_times = stats::step(&mut app, args.frames, stats_file.is_some());
-    let image = capture(&mut app)?;
     if let Some(picture) = picture {
-        picture.commit(image)?;
+        picture.commit(strip::capture_orbit(&mut app, args.orbit)?)?;
     }
     if let Some(path) = stats_file {
         let stats = stats::gather(&app, &shape_times)?;

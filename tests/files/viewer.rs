@@ -81,6 +81,7 @@ fn an_option_that_makes_no_sense_is_named() {
         (&["--size", "0x5"], "0x5"),
         (&["--size", "5"], "--size"),
         (&["--frames", "0"], "--frames"),
+        (&["--orbit", "0"], "--orbit"),
         (&["--refractions", "3"], "--refractions"),
         (&["--smoothing", "nicely"], "nicely"),
         (&["--debug-view", "feelings"], "feelings"),
@@ -134,6 +135,28 @@ fn without_an_adapter_it_says_what_to_install() {
         .output()
         .unwrap();
     assert_refused(&output, &folder, &["install", "mesa-vulkan-drivers"]);
+}
+
+#[test]
+fn an_orbit_is_several_pictures_in_one_each_turned_a_little() {
+    let folder = folder("orbit");
+    let file = xyz(&folder, &[]);
+    let output = run(&file, &folder, &["--orbit", "5"]);
+    assert!(output.status.success(), "{:?}", lines(&output.stderr));
+    let path = folder.join("picture.png");
+    // Rows of four; what is left of the last is black.
+    assert_picture(&path, (4 * 96, 2 * 64));
+    let sheet = image::open(&path).unwrap().into_rgb8();
+    let tile = |x, y| image::imageops::crop_imm(&sheet, 96 * x, 64 * y, 96, 64).to_image();
+    let difference = |a: &image::RgbImage, b: &image::RgbImage| -> f64 {
+        let pairs = a.as_raw().iter().zip(b.as_raw());
+        let sum: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum();
+        f64::from(sum) / a.as_raw().len() as f64
+    };
+    let [first, second, last] = [(0, 0), (1, 0), (0, 1)].map(|(x, y)| tile(x, y));
+    let [near, far] = [&second, &last].map(|other| difference(&first, other));
+    assert!(0.0 < near && near < far && far < 20.0, "{near}, {far}");
+    assert!(tile(1, 1).as_raw().iter().all(|byte| *byte == 0));
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub(crate) struct Trade {
 }
 
 /// What is plotted for each scene that has it: the smoothing alone, then the whole frame.
-pub(crate) const TRADES: [Trade; 6] = [
+pub(crate) const TRADES: [Trade; 7] = [
     Trade {
         time: "time_smooth_normals",
         error: "normal_p50",
@@ -63,6 +63,14 @@ pub(crate) const TRADES: [Trade; 6] = [
         region: "all",
         title: "thickness, RMSE",
         unit: "particle radii",
+        smoothing: false,
+    },
+    Trade {
+        time: "time_gpu",
+        error: "aliasing_rmse",
+        region: "all",
+        title: "antialiasing, RMSE",
+        unit: "RMSE of sRGB values",
         smoothing: false,
     },
 ];

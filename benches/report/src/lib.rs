@@ -106,6 +106,9 @@ pub fn run_apart(options: &Options) -> Result<(), ReportError> {
         if let Some(jitters) = options.jitters {
             part.args(["--jitters".into(), jitters.to_string()]);
         }
+        if let Some(truths) = &options.truths {
+            part.arg("--truths").arg(truths);
+        }
         part.arg("--pictures").arg(options.pictures());
         let status = part.status().map_err(|error| failed(error.to_string()))?;
         if !status.success() {

@@ -32,6 +32,9 @@ pub struct Options {
     /// No pictures from a moving camera, of which most are drawn
     #[arg(long)]
     pub still: bool,
+    /// A folder for the truths about antialiasing: those that are there are not drawn again
+    #[arg(long, value_name = "DIR")]
+    pub truths: Option<PathBuf>,
     /// Where the table, the plots and the summary go
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -68,19 +71,22 @@ impl Options {
         };
         known(&options.scene, &scenes::names(), "scene")?;
         known(&options.method, &methods::names(), "method")?;
-        options.make_folder()?;
+        options.make_folders()?;
         Ok(options)
     }
 
-    fn make_folder(&self) -> Result<(), ReportError> {
-        let probe = self.out.join(".probe");
-        let made = fs::create_dir_all(&self.out)
-            .and_then(|()| fs::write(&probe, []))
-            .and_then(|()| fs::remove_file(&probe));
-        made.map_err(|source| ReportError::Write {
-            path: self.out.clone(),
-            source,
-        })
+    fn make_folders(&self) -> Result<(), ReportError> {
+        for folder in self.truths.iter().chain([&self.out]) {
+            let probe = folder.join(".probe");
+            let made = fs::create_dir_all(folder)
+                .and_then(|()| fs::write(&probe, []))
+                .and_then(|()| fs::remove_file(&probe));
+            made.map_err(|source| ReportError::Write {
+                path: folder.clone(),
+                source,
+            })?;
+        }
+        Ok(())
     }
 
     /// Pictures whose mean is the truth about antialiasing.

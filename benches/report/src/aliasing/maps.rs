@@ -21,8 +21,7 @@ pub(super) fn write(
     edges: &Edges,
     folder: &Path,
 ) -> Result<(), ReportError> {
-    let parameters = method.parameters.replace([' ', '.', ','], "-");
-    let stem = format!("{}_{}{parameters}", scene.name, method.name);
+    let stem = stem(scene, method);
     let three = [drawn(picture), drawn(truth), map(picture, truth)];
     for (image, what) in three.iter().zip(["picture", "truth", "map"]) {
         save(image, &folder.join(format!("{stem}_{what}.png")))?;
@@ -40,6 +39,12 @@ pub(super) fn write(
         }
     }
     save(&sheet, &folder.join(format!("{stem}_crops.png")))
+}
+
+/// What names of files begin with.
+pub(super) fn stem(scene: &Scene, method: &Method) -> String {
+    let parameters = method.parameters.replace([' ', '.', ','], "-");
+    format!("{}_{}{parameters}", scene.name, method.name)
 }
 
 fn drawn(picture: &Image<DVec3>) -> RgbImage {

@@ -26,7 +26,7 @@ use crate::{
     table::{Subject, Table},
 };
 use motion::{Motion, Path};
-use truth::{supersample, unfiltered};
+use truth::{kept_or_drawn, unfiltered};
 
 /// Difference of some channel (sRGB, 0 to 1) from which on a pixel is off.
 const OFF: f64 = 0.2;
@@ -106,7 +106,19 @@ pub(crate) fn measure(
     let wrong = |source| metric(subject, source);
 
     rig.show(&unfiltered(method))?;
-    let truth = supersample(rig, &scene.camera, options.jitters())?;
+    let keep = |what: &str| {
+        let size = scene.camera.size;
+        let name = format!(
+            "{}_{}x{}_{what}.png",
+            maps::stem(scene, method),
+            size.x,
+            size.y
+        );
+        options.truths.as_ref().map(|folder| folder.join(name))
+    };
+    let jitters = options.jitters();
+    let kept = keep(&format!("{jitters}"));
+    let truth = kept_or_drawn(rig, &scene.camera, jitters, kept.as_deref())?;
     rig.aim(&scene.camera, DVec2::ZERO);
     rig.frame();
     let fronts = rig.fronts()?;
@@ -115,7 +127,7 @@ pub(crate) fn measure(
     let distance = motion::distance(&scene.camera, &fronts);
     let walks = paths
         .iter()
-        .map(|path| path.walk(rig, &scene.camera, distance, options))
+        .map(|path| path.walk(rig, &scene.camera, distance, options, keep))
         .collect::<Result<Vec<_>, _>>()?;
 
     rig.aim(&scene.camera, DVec2::ZERO);

@@ -1,9 +1,9 @@
 //! That pictures through other places of their pixels are what they should be.
 
 use bevy::math::{DVec2, DVec3, UVec2, dvec2, uvec2};
-use fluid_reference::Image;
+use fluid_reference::{Image, metrics::decode_srgb};
 
-use super::{supersample, unfiltered};
+use super::truth::{supersample, unfiltered};
 use crate::{methods, rig::Rig, scenes};
 
 fn rig(size: &str) -> (scenes::Scene, Rig) {
@@ -49,21 +49,53 @@ fn a_picture_through_places_a_pixel_away_is_the_picture_a_pixel_away() {
     assert_eq!(picture(DVec2::ZERO).pixels(), middle.pixels());
 }
 
-/// The mean over its jitters of a picture whose pixels are a quarter as wide and high is that of a
-/// pixel's quarters.
+/// Edges that move by a part of a pixel change pixels by that part of what a whole one does.
+#[test]
+fn a_wall_moves_by_the_part_of_a_pixel_that_is_asked_for() {
+    let (scene, mut rig) = rig("160x120");
+    let middle = rig.picture().unwrap();
+    let mut change = |off| {
+        rig.aim(&scene.camera, off);
+        rig.frame();
+        let moved = rig.picture().unwrap();
+        // Above the liquid.
+        let wall = Image::from_fn(uvec2(160, 24), |pixel| {
+            let [a, b] = [&moved, &middle].map(|picture| decode_srgb(*picture.get(pixel)).y);
+            (a - b).abs()
+        });
+        wall.pixels().iter().sum::<f64>()
+    };
+    for axis in [DVec2::X, DVec2::Y] {
+        let whole = change(axis);
+        for part in [-0.25, 0.25, 0.5] {
+            let share = change(axis * part) / whole;
+            assert!(
+                (share - part.abs()).abs() < 0.03,
+                "{share} for {part} of {axis}"
+            );
+        }
+    }
+}
+
+/// What is covered in part lies where the outline is, and all parts together are as large as the
+/// liquid.
 #[test]
 fn the_mean_shows_edges_by_their_coverage() {
     let (scene, mut rig) = rig("160x120");
+    let whole = rig.fronts().unwrap();
+    let whole = whole.map(|front| f64::from(front.is_some()));
     let mean = supersample(&mut rig, &scene.camera, 64).unwrap();
-    let fronts = rig.fronts().unwrap();
-    let partial = mean.coverage.pixels().iter();
-    let partial = partial.filter(|c| **c > 0.0 && **c < 1.0).count();
-    assert!(partial > 100, "{partial}");
-    // The liquid's area is the same, seen either way.
-    let area: f64 = mean.coverage.pixels().iter().sum();
-    let whole = fronts.pixels().iter().flatten().count() as f64;
-    assert!((area / whole - 1.0).abs() < 0.01, "{area} of {whole}");
-    // The sky and the floor are the same, but for the squares' edges.
-    let corner = *mean.image.get(uvec2(2, 2));
-    assert!(corner.is_finite() && corner.min_element() > 0.0);
+    let pairs = mean.coverage.pixels().iter().zip(whole.pixels());
+    let partial = |(mean, whole): &(&f64, &f64)| mean != whole;
+    let edge = pairs.clone().filter(partial).count() as f64;
+    // An outline is about as long as the box around it, and crosses a pixel or two on each pixel.
+    assert!((300.0..1200.0).contains(&edge), "{edge}");
+    let [mean, whole] = [&mean.coverage, &whole].map(|image| image.pixels().iter().sum::<f64>());
+    assert!((mean / whole - 1.0).abs() < 0.005, "{mean} of {whole}");
+    // Of one sample, it is the picture itself.
+    let one = supersample(&mut rig, &scene.camera, 1).unwrap();
+    let drawn = rig.picture().unwrap();
+    let pairs = one.image.pixels().iter().zip(drawn.pixels());
+    let worst = pairs.map(|(a, b)| (*a - *b).abs().max_element());
+    assert!(worst.fold(0.0, f64::max) < 1e-6);
 }

@@ -16,6 +16,8 @@ pub(super) fn text(table: &Table) -> String {
         "pops",
         "difference of frames, 0.1°",
         "pops",
+        "FLIP",
+        "RMSE from the truth",
     ]);
     let mut any = false;
     for scene in table.scenes() {
@@ -35,6 +37,8 @@ pub(super) fn text(table: &Table) -> String {
                     value("shift_pops", "all"),
                     value("orbit_difference", "all"),
                     value("orbit_pops", "all"),
+                    value("flip", "all"),
+                    value("picture_rmse", "all"),
                 ],
             );
         }
@@ -47,7 +51,9 @@ pub(super) fn text(table: &Table) -> String {
          sRGB values of 0 to 1, at the liquid's silhouette, at its inner edges and inside. \
          Sharpness is gradient energy over the mean's. Differences from frame to frame, while the \
          camera moves by a tenth of a pixel or turns by a tenth of a degree, are over the mean's; \
-         a pixel pops where it changes by 0.2 and the mean does not.\n\n{}",
+         a pixel pops where it changes by 0.2 and the mean does not. FLIP and the last RMSE are from \
+         the tracer's picture of 64 rays a pixel, or of 4 and without FLIP where the surface is \
+         implicit.\n\n{}",
         rows.finish()
     )
 }

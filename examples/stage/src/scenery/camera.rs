@@ -25,6 +25,16 @@ pub fn orbit_camera(eye: Vec3, target: Vec3) -> impl Bundle {
     )
 }
 
+/// Turns the cameras of [`orbit_camera`] around their targets by an angle (radians), to the right: what
+/// the mouse does in a window.
+pub fn turn_cameras(world: &mut World, angle: f32) {
+    let turn = Quat::from_rotation_y(angle);
+    let mut cameras = world.query::<(&mut Transform, &PanOrbitCamera)>();
+    for (mut transform, orbit) in cameras.iter_mut(world) {
+        transform.rotate_around(orbit.focus, turn);
+    }
+}
+
 /// The nearest `(eye, target)` in a three-quarter view that shows all of `inside`, with a small
 /// margin.
 ///
@@ -53,6 +63,22 @@ pub fn frame_camera(inside: Aabb3d, fov: f32, aspect: f32) -> (Vec3, Vec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cameras_turn_around_their_targets() {
+        let mut world = World::new();
+        let target = Vec3::new(1.0, 0.5, 0.0);
+        let camera = world
+            .spawn(orbit_camera(Vec3::new(1.0, 0.5, 2.0), target))
+            .id();
+        let other = world.spawn(Transform::from_xyz(3.0, 0.0, 0.0)).id();
+        turn_cameras(&mut world, std::f32::consts::FRAC_PI_2);
+        let turned = world.get::<Transform>(camera).unwrap();
+        assert!(turned.translation.distance(Vec3::new(3.0, 0.5, 0.0)) < 1e-5);
+        assert!(turned.forward().distance(Vec3::NEG_X) < 1e-5);
+        let unmoved = world.get::<Transform>(other).unwrap();
+        assert_eq!(*unmoved, Transform::from_xyz(3.0, 0.0, 0.0));
+    }
 
     #[test]
     fn every_corner_is_in_view_and_one_nearly_at_the_border() {

@@ -25,7 +25,7 @@ mod sky;
 mod sun;
 mod tank;
 
-pub use camera::{PanOrbitCameraSystemSet, frame_camera, orbit_camera};
+pub use camera::{PanOrbitCameraSystemSet, frame_camera, orbit_camera, turn_cameras};
 pub use cubemap::sky_cubemap;
 pub use sky::Sky;
 
