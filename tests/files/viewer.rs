@@ -147,7 +147,8 @@ fn an_orbit_is_several_pictures_in_one_each_turned_a_little() {
     // Rows of four; what is left of the last is black.
     assert_picture(&path, (4 * 96, 2 * 64));
     let sheet = image::open(&path).unwrap().into_rgb8();
-    let tile = |x, y| image::imageops::crop_imm(&sheet, 96 * x, 64 * y, 96, 64).to_image();
+    let tile =
+        |x: u32, y: u32| image::imageops::crop_imm(&sheet, 96 * x, 64 * y, 96, 64).to_image();
     let difference = |a: &image::RgbImage, b: &image::RgbImage| -> f64 {
         let pairs = a.as_raw().iter().zip(b.as_raw());
         let sum: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum();

@@ -11,9 +11,12 @@
 #endif
 
 @group(1) @binding(7) var coverage: texture_2d<f32>;
-// For dense media: the transmitted fractions of red in its alpha, and of green and blue.
-@group(1) @binding(8) var radiance: texture_2d<f32>;
-@group(1) @binding(9) var transmission: texture_2d<f32>;
+#ifdef DENSE
+// The transmitted fractions of red in its alpha, and of green and blue: in the places of normals,
+// which unbent liquids have not, as WebGPU allows no more than 16 textures.
+@group(1) @binding(1) var radiance: texture_2d<f32>;
+@group(1) @binding(3) var transmission: texture_2d<f32>;
+#endif
 
 struct Output {
 #ifndef DEPTH_ALONE

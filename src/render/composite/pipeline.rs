@@ -121,8 +121,6 @@ impl FromWorld for CompositePipeline {
                         uniform_buffer::<GpuTracing>(true),
                         unfiltered(),
                         unfiltered(),
-                        unfiltered(),
-                        unfiltered(),
                     ),
                 ),
             ),
@@ -193,18 +191,23 @@ impl Stage for CompositePipeline {
         GpuTracing::of(surface)
     }
 
-    fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
+    fn prepare(&self, group: &mut Group, surface: &Surface, layers: &Layers, inputs: &Inputs) {
+        // Dense media read these; they have no normals.
+        let index_one = surface.plan().is_some_and(|plan| plan.index_one);
+        let [first, second] = if index_one {
+            [&layers.radiance, &layers.transmission]
+        } else {
+            [&layers.bulk_normals, &layers.spray_normals]
+        };
         let lit = [
             inputs.or_nothing(&layers.bulk),
-            inputs.or_nothing(&layers.bulk_normals),
+            inputs.or_nothing(first),
             inputs.or_nothing(&layers.spray),
-            inputs.or_nothing(&layers.spray_normals),
+            inputs.or_nothing(second),
             inputs.or_nothing(&layers.thickness),
             inputs.uniform.clone(),
             Input::texture(layers.light.as_ref()),
             inputs.or_nothing(&layers.coverage),
-            Input::texture(layers.radiance.as_ref()),
-            Input::texture(layers.transmission.as_ref()),
         ];
         group.prepare(inputs.gpu, SPAN, &self.layout, &lit);
     }

@@ -144,8 +144,8 @@ fn h14_everything_scaled_by_1e4() {
 
 fn assert_scaled(scale: f32) {
     let changed = differing(&scaled(scale), &scaled(1.0), 2);
-    // Silhouettes may round to the next pixel.
-    assert!(changed <= 20, "{changed} of {} pixels", 64 * 64);
+    // Silhouettes may round to the next pixel, of which their neighbours show a part.
+    assert!(changed <= 60, "{changed} of {} pixels", 64 * 64);
 }
 
 #[test]
