@@ -4,6 +4,7 @@
 mod common;
 
 mod citizen;
+mod classes;
 mod debug_views;
 mod fallbacks;
 mod frames;
