@@ -16,5 +16,6 @@ mod rain;
 mod random_cameras;
 mod refraction;
 mod relocation;
+mod small_particles;
 mod smoothing;
 mod textures;
