@@ -20,11 +20,13 @@ pub struct PlaneFit {
     /// How large the window is. Default 1.7 radii. Larger: smoother, less detail.
     pub window: Window,
     /// Depth difference at which a tap has the weight exp(-1). Unit: particle radii, range 0.5..=4,
-    /// default 2. Higher: smoother, but surfaces at different depths begin to blend.
+    /// default 2. Higher: smoother, but surfaces at different depths begin to blend. With a window in
+    /// radii, it is at least as far as the surface's own slope goes over half the window, so that
+    /// surfaces seen at a grazing angle are smoothed as well.
     #[reflect(@SettingRange::new(0.5, 4.0).unit("radii"))]
     pub range: f32,
     /// Largest distance by which the fit may move a pixel; beyond it, the old depth is kept. Unit:
-    /// particle radii, range 0.1.., default 2.
+    /// particle radii, range 0.1.., default 2. It widens as the range does.
     #[reflect(@SettingRange::new(0.1, 8.0).unit("radii").open())]
     pub bound: f32,
 }

@@ -1,6 +1,6 @@
 //! Neighbourhoods → ellipsoids (Yu & Turk 2013, sections 4 and 5; thesis 4.1).
 
-use std::{array, ops::Range};
+use std::{array, ops::Range, slice::IterMut};
 
 use bevy::math::Vec3;
 use half::{f16, slice::HalfFloatSliceExt};
@@ -8,10 +8,11 @@ use wide::f32x8;
 
 use super::{
     CHUNK, Splat, SurfaceKernel,
-    classify::{Class, Classes},
+    classify::{Class, Classes, bulk_weight, scales},
     eigen::{Eigen, eigen},
     grid::Grid,
     neighborhood::Neighborhood,
+    splats::{PARTS, Part},
 };
 
 /// Ellipsoids made at a time.
@@ -73,66 +74,82 @@ pub(super) struct Splatting<'a> {
 }
 
 impl Splatting<'_> {
-    /// Writes the splats of the chunks into one slice per class and returns their bounds.
+    /// Writes the splats of the chunks into one slice per part and returns their bounds.
     ///
     /// The halves run in parallel. The place of each splat depends on the counts alone, so the
     /// splats are deterministic for any number of threads.
-    pub(super) fn splat(&self, chunks: Range<usize>, out: [&mut [Splat]; 3]) -> Bounds {
+    pub(super) fn splat(&self, chunks: Range<usize>, out: [&mut [Splat]; PARTS]) -> Bounds {
         match chunks.len() {
             0 => return Bounds::EMPTY,
             1 => return self.splat_chunk(chunks.start, out),
             _ => {}
         }
         let middle = chunks.start + chunks.len() / 2;
-        let mut sizes = [0; 3];
-        for counts in &self.classes.counts[chunks.start..middle] {
-            sizes = array::from_fn(|class| sizes[class] + counts[class]);
-        }
-        let [bulk, interior, spray] = out;
-        let (bulk, rest_bulk) = bulk.split_at_mut(sizes[0]);
-        let (interior, rest_interior) = interior.split_at_mut(sizes[1]);
-        let (spray, rest_spray) = spray.split_at_mut(sizes[2]);
+        let mut rest: [&mut [Splat]; PARTS] = Default::default();
+        let mut part = 0;
+        let firsts = out.map(|splats| {
+            let counts = &self.classes.counts[chunks.start..middle];
+            let size = counts.iter().map(|counts| counts[part]).sum();
+            let (first, second) = splats.split_at_mut(size);
+            rest[part] = second;
+            part += 1;
+            first
+        });
         let (left, right) = rayon::join(
-            || self.splat(chunks.start..middle, [bulk, interior, spray]),
-            || self.splat(middle..chunks.end, [rest_bulk, rest_interior, rest_spray]),
+            || self.splat(chunks.start..middle, firsts),
+            || self.splat(middle..chunks.end, rest),
         );
         left.union(right)
     }
 
-    fn splat_chunk(&self, chunk: usize, out: [&mut [Splat]; 3]) -> Bounds {
+    fn splat_chunk(&self, chunk: usize, out: [&mut [Splat]; PARTS]) -> Bounds {
         let first = chunk * CHUNK;
         let classes = &self.classes.of[first..self.grid.len().min(first + CHUNK)];
         let mut out = out.map(|splats| splats.iter_mut());
         let mut bounds = Bounds::EMPTY;
         let mut batch = Batch::default();
+        let interior_radius = if self.kernel.anisotropic {
+            self.kernel.radius_scale.max(INTERIOR_RADIUS) * self.radius
+        } else {
+            self.radius
+        };
         for (sorted, &class) in (first..).zip(classes) {
-            let out = &mut out[class as usize];
-            let interior_radius = self.kernel.radius_scale.max(INTERIOR_RADIUS) * self.radius;
-            let radius = match class {
-                Class::Bulk if self.kernel.anisotropic => {
-                    if batch.push(sorted) {
-                        bounds = bounds.union(self.ellipsoids(&mut batch, out));
-                    }
-                    continue;
+            let mut sphere = |part: Part, radius: f32| {
+                let center = self.grid.position(sorted);
+                bounds = bounds.union(Bounds::around(center, Vec3::splat(radius * BOX_MARGIN)));
+                if let Some(splat) = out[part as usize].next() {
+                    *splat = Splat::sphere(center, radius, self.grid.order[sorted]);
                 }
-                Class::Interior if self.kernel.anisotropic => interior_radius,
-                _ => self.radius,
             };
-            let center = self.grid.position(sorted);
-            bounds = bounds.union(Bounds::around(center, Vec3::splat(radius * BOX_MARGIN)));
-            if let Some(splat) = out.next() {
-                *splat = Splat::sphere(center, radius, self.grid.order[sorted]);
+            if class == Class::Interior {
+                sphere(Part::Interior, interior_radius);
+                continue;
+            }
+            let weight = self.bulk_weight(sorted);
+            let [bulk, spray] = scales(weight);
+            if let Some(part) = Part::spray(weight) {
+                sphere(part, spray * self.radius);
+            }
+            if let Some(part) = Part::bulk(weight) {
+                if !self.kernel.anisotropic {
+                    sphere(part, bulk * self.radius);
+                } else if batch.push(sorted) {
+                    bounds = bounds.union(self.ellipsoids(&mut batch, &mut out));
+                }
             }
         }
-        bounds.union(self.ellipsoids(&mut batch, &mut out[Class::Bulk as usize]))
+        bounds.union(self.ellipsoids(&mut batch, &mut out))
     }
 
-    /// Makes an ellipsoid of every particle of the batch and empties it.
-    fn ellipsoids<'s>(
-        &self,
-        batch: &mut Batch,
-        out: &mut impl Iterator<Item = &'s mut Splat>,
-    ) -> Bounds {
+    fn bulk_weight(&self, sorted: usize) -> f32 {
+        bulk_weight(
+            self.neighborhoods[sorted].count,
+            self.kernel.spray_threshold,
+        )
+    }
+
+    /// Makes a bulk splat of every particle of the batch and empties it.
+    fn ellipsoids(&self, batch: &mut Batch, out: &mut [IterMut<Splat>; PARTS]) -> Bounds {
         let lanes = |value: &dyn Fn(&Neighborhood) -> f32| {
             f32x8::new(
                 batch
@@ -168,20 +185,25 @@ impl Splatting<'_> {
         let shift = shift.to_array();
         let mut bounds = Bounds::EMPTY;
         let particles = &batch.particles[..batch.len];
-        for (lane, (&sorted, splat)) in particles.iter().zip(out).enumerate() {
+        for (lane, &sorted) in particles.iter().enumerate() {
+            let weight = self.bulk_weight(sorted);
+            let scale = scale[lane] * scales(weight)[0];
             let mean = Vec3::from(self.neighborhoods[sorted].mean);
             let center = self.grid.position(sorted) + mean * shift[lane];
             let [xx, xy, xz, yy, yz, zz] = array::from_fn(|entry| flat[lane * 6 + entry]);
             let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
             let half_size = Vec3::from(rows.map(|row| Vec3::from(row).length()));
-            let half_size = half_size * (scale[lane] * BOX_MARGIN);
+            let half_size = half_size * (scale * BOX_MARGIN);
             bounds = bounds.union(Bounds::around(center, half_size));
-            *splat = Splat {
-                center: center.to_array(),
-                scale: scale[lane],
-                axes: array::from_fn(|entry| halves[lane * 6 + entry]),
-                particle: self.grid.order[sorted],
-            };
+            let splat = Part::bulk(weight).and_then(|part| out[part as usize].next());
+            if let Some(splat) = splat {
+                *splat = Splat {
+                    center: center.to_array(),
+                    scale,
+                    axes: array::from_fn(|entry| halves[lane * 6 + entry]),
+                    particle: self.grid.order[sorted],
+                };
+            }
         }
         batch.len = 0;
         bounds

@@ -14,6 +14,10 @@ use super::{
 
 const LANES: usize = 8;
 
+/// A neighbour at the distance d counts as min(1, 10 (1 − d/R)): whole up to 0.9 R, and less and
+/// less over the outer tenth, so that none jumps in or out.
+const COUNT_SLOPE: f32 = 10.0;
+
 /// Maximum number of candidates that one particle is compared with. A cell may hold any number of
 /// particles; above this, an even sample represents them all, which bounds the work.
 pub(super) const MAX_CANDIDATES: usize = 2048;
@@ -179,8 +183,10 @@ impl Candidates {
             let distance_squared = x * x + y * y + z * z;
             let near = distance_squared.simd_le(limit);
             let ratio_squared = distance_squared * per_limit;
-            let w = near & (f32x8::ONE - ratio_squared * ratio_squared.sqrt());
-            count += near & f32x8::ONE;
+            let ratio = ratio_squared.sqrt();
+            let w = near & (f32x8::ONE - ratio_squared * ratio);
+            let counted = (f32x8::ONE - ratio) * f32x8::splat(COUNT_SLOPE);
+            count += counted.fast_max(f32x8::ZERO).fast_min(f32x8::ONE);
             weight += w;
             let [wx, wy, wz] = [w * x, w * y, w * z];
             first[0] += wx;

@@ -1,12 +1,21 @@
-//! Bulk, interior or spray (thesis 4.2; the interior is an addition).
+//! Bulk, interior or spray (thesis 4.2; the interior and the weight are additions).
+//!
+//! Between bulk and spray a particle has a weight and two splats, one in each class, so that it does
+//! not pop from one class's layers to the other's. The weight depends on this frame alone.
 
-use std::f32::consts::PI;
+use std::{array, f32::consts::PI};
 
 use rayon::prelude::*;
 
-use super::{CHUNK, SurfaceKernel, candidates::Candidates, grid::Grid, neighborhood::Neighborhood};
+use super::{
+    CHUNK, SurfaceKernel,
+    candidates::Candidates,
+    grid::Grid,
+    neighborhood::Neighborhood,
+    splats::{PARTS, Part},
+};
 
-/// Class of a particle, in the order of the splats.
+/// Class of a particle: the one in which it has a splat of full size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Class {
     /// The body of the liquid, up to its surface.
@@ -17,6 +26,12 @@ pub(super) enum Class {
     /// Droplets.
     Spray,
 }
+
+/// Number of neighbours below the threshold within which bulk becomes spray.
+const SPRAY_RAMP: f32 = 3.0;
+
+/// Neighbours counted at rest over those within R: the mean of min(1, 10 (1 − d/R)) over a ball.
+const COUNTED: f32 = 0.86;
 
 /// Smallest fraction of the neighbours at rest in a full neighbourhood.
 const FULL_COUNT: f32 = 0.75;
@@ -33,12 +48,26 @@ const FULL_ANISOTROPY: f32 = 0.15;
 /// fifth of the interior.
 pub(super) const SHELL: f32 = 3.5;
 
+/// The part of a particle that is bulk, 0 to 1: 1 from `threshold` neighbours, 0 with three fewer or
+/// none, and linear in between.
+pub(super) fn bulk_weight(count: f32, threshold: u32) -> f32 {
+    let threshold = threshold as f32;
+    let width = threshold.clamp(1.0, SPRAY_RAMP);
+    (1.0 + (count - threshold) / width).clamp(0.0, 1.0)
+}
+
+/// Scales of a particle's bulk splat and of its spray splat. One of them is always of full size, so
+/// the liquid never shrinks in between: the other one grows or shrinks inside it.
+pub(super) fn scales(bulk_weight: f32) -> [f32; 2] {
+    [bulk_weight, 1.0 - bulk_weight].map(|weight| (2.0 * weight).min(1.0))
+}
+
 /// Classes of the sorted particles.
 #[derive(Default)]
 pub(super) struct Classes {
     pub(super) of: Vec<Class>,
-    /// Particles of every class, by chunk.
-    pub(super) counts: Vec<[usize; 3]>,
+    /// Splats of every [`Part`], by chunk.
+    pub(super) counts: Vec<[usize; PARTS]>,
     /// Whether the neighbourhood is full and balanced on all sides.
     full: Vec<bool>,
 }
@@ -53,7 +82,7 @@ impl Classes {
     ) {
         self.find_full(neighborhoods, kernel);
         self.of.resize(grid.len(), Class::Bulk);
-        self.counts.resize(grid.len().div_ceil(CHUNK), [0; 3]);
+        self.counts.resize(grid.len().div_ceil(CHUNK), [0; PARTS]);
         let full = &self.full;
         let shell = SHELL.min(kernel.neighbor_radius) * radius;
         self.of
@@ -62,24 +91,31 @@ impl Classes {
             .zip(neighborhoods.par_chunks(CHUNK))
             .enumerate()
             .for_each(|(chunk, ((classes, counts), neighborhoods))| {
+                let weight = |n: &Neighborhood| bulk_weight(n.count, kernel.spray_threshold);
                 for (class, neighborhood) in classes.iter_mut().zip(neighborhoods) {
-                    let spray = neighborhood.count < kernel.spray_threshold as f32;
-                    *class = if spray { Class::Spray } else { Class::Bulk };
+                    let is_spray = weight(neighborhood) < 0.5;
+                    *class = if is_spray { Class::Spray } else { Class::Bulk };
                 }
                 if kernel.skip_interior {
                     mark_interior(grid, full, shell, chunk * CHUNK, classes);
                 }
-                *counts = [0; 3];
-                for &class in &*classes {
-                    counts[class as usize] += 1;
+                *counts = [0; PARTS];
+                for (&class, neighborhood) in classes.iter().zip(neighborhoods) {
+                    let weight = weight(neighborhood);
+                    let parts = match class {
+                        Class::Interior => [Some(Part::Interior), None],
+                        _ => [Part::bulk(weight), Part::spray(weight)],
+                    };
+                    for part in parts.into_iter().flatten() {
+                        counts[part as usize] += 1;
+                    }
                 }
             });
     }
 
-    /// Particles of every class.
-    pub(super) fn totals(&self) -> [usize; 3] {
-        let sum = |class| self.counts.iter().map(|counts| counts[class]).sum();
-        [sum(0), sum(1), sum(2)]
+    /// Splats of every part.
+    pub(super) fn totals(&self) -> [usize; PARTS] {
+        array::from_fn(|part| self.counts.iter().map(|counts| counts[part]).sum())
     }
 
     /// Address and capacity of every buffer.
@@ -94,7 +130,7 @@ impl Classes {
 
     fn find_full(&mut self, neighborhoods: &[Neighborhood], kernel: &SurfaceKernel) {
         self.full.resize(neighborhoods.len(), false);
-        let at_rest = PI / 6.0 * kernel.neighbor_radius.powi(3) - 1.0;
+        let at_rest = COUNTED * PI / 6.0 * kernel.neighbor_radius.powi(3) - 1.0;
         self.full
             .par_chunks_mut(CHUNK)
             .zip(neighborhoods.par_chunks(CHUNK))

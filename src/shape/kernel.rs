@@ -15,15 +15,20 @@ use crate::settings::{Checked, SettingError, SettingRange, Settings};
 pub struct SurfaceKernel {
     /// Distance within which particles are neighbours (R = 2h in the papers).
     ///
-    /// Unit: particle radii. Range: 1 to 10. Default: 4, which is 32 neighbours at rest.
+    /// Unit: particle radii. Range: 1 to 10. Default: 4, which is 28 neighbours at rest, 32 with those
+    /// that count in part.
     /// Higher: smoother shapes, at a cost that grows with the cube.
     /// Lower: every particle keeps more of its own bump; below 3 most are spray.
     #[reflect(@SettingRange::new(1.0, 10.0).unit("radii"))]
     pub neighbor_radius: f32,
 
-    /// Number of neighbours below which a particle is spray instead of bulk.
+    /// Number of neighbours from which a particle is bulk. With three fewer, or none, it is spray; in
+    /// between it is drawn as both, one of them smaller, so that it does not pop from one to the other.
     ///
-    /// Unit: particles. Range: any; 0 makes every particle bulk. Default: 8.
+    /// A neighbour at the distance d counts as min(1, 10 (1 − d/R)), R being `neighbor_radius`: whole up
+    /// to 0.9 R, in part over the outer tenth.
+    ///
+    /// Unit: particles. Range: any; 0 makes every particle bulk. Default: 7.
     /// Higher: thin sheets and threads come apart into droplets.
     /// Lower: droplets join the bulk and are smoothed with it.
     #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
@@ -71,15 +76,15 @@ pub struct SurfaceKernel {
 
     /// Number of neighbours up to which a splat is the unshifted sphere of radius r.
     ///
-    /// Unit: particles. Range: any up to `full_neighbors`. Default: 8, as `spray_threshold`,
-    /// so that a particle does not pop when it turns from bulk to spray.
+    /// Unit: particles. Range: any up to `full_neighbors`. Default: 7, as `spray_threshold`, so that a
+    /// particle's two splats are alike while it turns from bulk to spray.
     /// Higher: sparse regions stay spheres. Lower: they stretch.
     #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub sphere_neighbors: u32,
 
     /// Number of neighbours from which a splat is fully anisotropic.
     ///
-    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 16 (`N_ε` = 25 in the paper,
+    /// Unit: particles. Range: any from `sphere_neighbors`. Default: 13 (`N_ε` = 25 in the paper,
     /// for a wider R). Shape, shift and scale blend smoothly in between.
     /// Higher: a longer blend. Lower: a shorter blend, with visible pops if it is short.
     #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
@@ -101,14 +106,14 @@ impl SurfaceKernel {
     /// The default.
     pub const DEFAULT: Self = Self {
         neighbor_radius: 4.0,
-        spray_threshold: 8,
+        spray_threshold: 7,
         anisotropic: true,
         center_shift: 0.9,
         surface_offset: 1.15,
         max_ratio: 4.0,
         radius_scale: 1.24,
-        sphere_neighbors: 8,
-        full_neighbors: 16,
+        sphere_neighbors: 7,
+        full_neighbors: 13,
         skip_interior: true,
     };
 

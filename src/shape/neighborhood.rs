@@ -4,7 +4,8 @@
 /// (Yu & Turk 2013, equations 9 to 11). Lengths in R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Neighborhood {
-    /// Number of neighbours, without the particle itself.
+    /// Number of neighbours, without the particle itself. Those in the outer tenth of R count in
+    /// part, so it is continuous.
     pub(super) count: f32,
     /// Weighted mean, from the particle.
     pub(super) mean: [f32; 3],

@@ -14,6 +14,28 @@ pub(crate) fn neighbors(positions: &[Vec3], of: usize, reach: f32) -> Vec<usize>
     others.filter(near).collect()
 }
 
+/// Number of neighbours, those in the outer tenth of `reach` in part, in f64.
+pub(crate) fn count(positions: &[Vec3], of: usize, reach: f32) -> f64 {
+    let around = neighbors(positions, of, reach);
+    let counted = around.into_iter().map(|other| {
+        let distance = positions[other]
+            .as_dvec3()
+            .distance(positions[of].as_dvec3());
+        (10.0 * (1.0 - distance / f64::from(reach))).clamp(0.0, 1.0)
+    });
+    counted.sum()
+}
+
+/// The part of a particle that is bulk.
+pub(crate) fn bulk_weight(count: f64, threshold: u32) -> f64 {
+    if threshold == 0 {
+        return 1.0;
+    }
+    let threshold = f64::from(threshold);
+    let none = (threshold - 3.0).max(0.0);
+    ((count - none) / (threshold - none)).clamp(0.0, 1.0)
+}
+
 /// Weighted mean (in `reach`, from the particle) and covariance xx, xy, xz, yy, yz, zz (in
 /// `reach`²) in f64, in two passes.
 pub(crate) fn moments(positions: &[Vec3], of: usize, reach: f32) -> ([f64; 3], [f64; 6]) {

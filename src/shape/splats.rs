@@ -1,6 +1,6 @@
 //! Output of the shape stage, for the renderer.
 
-use std::time::Duration;
+use std::{array, time::Duration};
 
 use bevy::math::{Mat3, Vec3};
 use bytemuck::{Pod, Zeroable};
@@ -40,17 +40,64 @@ impl Splat {
     }
 }
 
+/// A particle has no splat in a class to which it belongs by less: f16 rounds axes by as much.
+const LEAST: f32 = 1.0 / 2048.0;
+
+/// Parts of a fluid's splats, in their order.
+#[derive(Clone, Copy)]
+pub(super) enum Part {
+    PartialBulk,
+    Bulk,
+    Interior,
+    Spray,
+    PartialSpray,
+}
+
+impl Part {
+    /// The part of the bulk splat of a particle of this bulk weight, if it has one.
+    pub(super) fn bulk(weight: f32) -> Option<Self> {
+        let is_whole = weight >= 0.5;
+        let part = if is_whole {
+            Self::Bulk
+        } else {
+            Self::PartialBulk
+        };
+        (weight > LEAST).then_some(part)
+    }
+
+    /// The part of its spray splat, likewise.
+    pub(super) fn spray(weight: f32) -> Option<Self> {
+        let is_whole = weight < 0.5;
+        let part = if is_whole {
+            Self::Spray
+        } else {
+            Self::PartialSpray
+        };
+        (weight < 1.0 - LEAST).then_some(part)
+    }
+}
+
+/// Number of [`Part`]s.
+pub(super) const PARTS: usize = 5;
+
 /// The splats of one fluid.
+///
+/// Every particle has one splat of full size, in its class. One between bulk and spray has a smaller
+/// one in the other class as well, which vanishes where the particle belongs to one class alone.
 #[derive(Clone, Debug)]
 pub struct FluidSplats {
-    /// All splats: bulk, then interior, then spray.
+    /// All splats: partial bulk, bulk, interior, spray, partial spray.
     pub splats: Vec<Splat>,
-    /// Number of bulk splats.
+    /// Number of bulk particles.
     pub bulk: u32,
-    /// Number of interior splats.
+    /// Number of interior particles.
     pub interior: u32,
-    /// Number of spray splats.
+    /// Number of spray particles.
     pub spray: u32,
+    /// Number of spray particles with a smaller splat in the bulk.
+    pub partial_bulk: u32,
+    /// Number of bulk particles with a smaller splat in the spray.
+    pub partial_spray: u32,
     /// Number of particles left out because their position is not finite.
     pub dropped: u32,
     /// Least corner of the box around all ellipsoids, in m. Without splats every coordinate
@@ -82,6 +129,8 @@ impl Default for FluidSplats {
             bulk: 0,
             interior: 0,
             spray: 0,
+            partial_bulk: 0,
+            partial_spray: 0,
             dropped: 0,
             min: Vec3::MAX,
             max: Vec3::MIN,
@@ -91,9 +140,10 @@ impl Default for FluidSplats {
 }
 
 impl FluidSplats {
-    /// The splats by class: bulk, interior, spray.
+    /// The splats by class, partial ones included: bulk, interior, spray.
     pub fn by_class(&self) -> [&[Splat]; 3] {
-        let (bulk, rest) = self.splats.split_at(self.bulk as usize);
+        let bulk = self.partial_bulk + self.bulk;
+        let (bulk, rest) = self.splats.split_at(bulk as usize);
         let (interior, spray) = rest.split_at(self.interior as usize);
         [bulk, interior, spray]
     }
@@ -108,13 +158,22 @@ impl FluidSplats {
         };
     }
 
-    /// Makes room for `counts` splats by class. Old splats stay until overwritten: clearing them
-    /// first would double the writes.
-    pub(super) fn resize(&mut self, counts: [usize; 3]) -> [&mut [Splat]; 3] {
-        [self.bulk, self.interior, self.spray] = counts.map(|count| count as u32);
+    /// Makes room for `counts` splats by part. Old splats stay until overwritten: clearing them
+    /// first would double the writes. There is room for both splats of every particle at once, so
+    /// that a frame with no more particles than before allocates nothing.
+    pub(super) fn resize(&mut self, counts: [usize; PARTS]) -> [&mut [Splat]; PARTS] {
+        let [partial_bulk, bulk, interior, spray, partial_spray] = counts.map(|count| count as u32);
+        (self.bulk, self.interior, self.spray) = (bulk, interior, spray);
+        (self.partial_bulk, self.partial_spray) = (partial_bulk, partial_spray);
+        let particles = (bulk + interior + spray) as usize;
+        self.splats
+            .reserve((2 * particles).saturating_sub(self.splats.len()));
         self.splats.resize(counts.iter().sum(), Splat::zeroed());
-        let (bulk, rest) = self.splats.split_at_mut(counts[0]);
-        let (interior, spray) = rest.split_at_mut(counts[1]);
-        [bulk, interior, spray]
+        let mut rest = self.splats.as_mut_slice();
+        array::from_fn(|part| {
+            let (these, others) = std::mem::take(&mut rest).split_at_mut(counts[part]);
+            rest = others;
+            these
+        })
     }
 }

@@ -6,6 +6,7 @@ use wide::f32x8;
 use super::{
     FluidSplats, ShapeWorkspace, SurfaceKernel,
     candidates::{self, MAX_CANDIDATES},
+    classify::{bulk_weight, scales},
     eigen::eigen,
     grid::Grid,
     neighborhood::Neighborhood,
@@ -28,8 +29,9 @@ fn check(positions: &[Vec3], reach: f32) {
     for (&particle, neighborhood) in grid.order.iter().zip(&neighborhoods) {
         let particle = particle as usize;
         assert!(!std::mem::replace(&mut seen[particle], true));
-        let count = oracle::neighbors(positions, particle, reach).len();
-        assert_eq!(neighborhood.count, count as f32, "particle {particle}");
+        let count = oracle::count(positions, particle, reach);
+        let error = (f64::from(neighborhood.count) - count).abs();
+        assert!(error < 1e-5 * (1.0 + count), "particle {particle}: {error}");
         let (mean, covariance) = oracle::moments(positions, particle, reach);
         for (value, exact) in neighborhood.mean.into_iter().zip(mean) {
             assert!((f64::from(value) - exact).abs() < 2e-6, "{value} {exact}");
@@ -68,18 +70,34 @@ fn h13_h14_neighborhoods_do_not_depend_on_the_scale() {
 }
 
 #[test]
-fn a_distance_of_exactly_the_reach_counts() {
+fn neighbors_count_in_part_near_the_reach() {
+    for (distance, counted) in [
+        (0.5, 1.0),
+        (0.9, 1.0),
+        (0.925, 0.75),
+        (0.99, 0.1),
+        (1.0, 0.0),
+    ] {
+        let (_, neighborhoods) = measure(&[Vec3::ZERO, Vec3::X * distance], 1.0);
+        for Neighborhood { count, .. } in neighborhoods {
+            assert!((count - counted).abs() < 1e-5, "{distance}: {count}");
+        }
+    }
+}
+
+#[test]
+fn a_distance_of_exactly_the_reach_adds_nothing() {
     let positions = lattice(5, 1.0, 0.0);
     let (grid, neighborhoods) = measure(&positions, 2.0);
     let count = |at: Vec3| {
         let sorted = (0..grid.len()).find(|&sorted| grid.position(sorted) == at);
         neighborhoods[sorted.unwrap()].count
     };
-    // 6 + 12 + 8 + 6 inside; the outer shell and more is cut off elsewhere.
-    assert_eq!(count(Vec3::splat(2.0)), 32.0);
-    assert_eq!(count(Vec3::new(2.0, 2.0, 0.0)), 22.0);
-    assert_eq!(count(Vec3::new(2.0, 0.0, 0.0)), 15.0);
-    assert_eq!(count(Vec3::ZERO), 10.0);
+    // 6 + 12 + 8 inside; the outer shell is cut off elsewhere.
+    assert_eq!(count(Vec3::splat(2.0)), 26.0);
+    assert_eq!(count(Vec3::new(2.0, 2.0, 0.0)), 17.0);
+    assert_eq!(count(Vec3::new(2.0, 0.0, 0.0)), 11.0);
+    assert_eq!(count(Vec3::ZERO), 7.0);
     check(&positions, 2.0);
 }
 
@@ -167,6 +185,20 @@ fn h35_a_crowded_cell_is_sampled() {
             // All of them, up to what the sample's stride cannot resolve.
             assert!((neighborhood.count - 20_000.0).abs() < 400.0);
             assert!(neighborhood.trace() > 0.0 && neighborhood.trace() < 0.5);
+        }
+    }
+}
+
+#[test]
+fn the_weight_of_the_bulk_equals_the_oracle() {
+    for threshold in [0, 1, 2, 3, 7, 30, u32::MAX] {
+        for step in 0..400 {
+            let count = step as f32 * 0.1;
+            let weight = f64::from(bulk_weight(count, threshold));
+            let exact = oracle::bulk_weight(f64::from(count), threshold);
+            assert!((weight - exact).abs() < 1e-5, "{count} of {threshold}");
+            let [bulk, spray] = scales(weight as f32);
+            assert!(bulk.max(spray) == 1.0 && bulk.min(spray) >= 0.0);
         }
     }
 }
@@ -300,10 +332,18 @@ fn a_steady_frame_keeps_its_buffers() {
         buffers
     };
     let before = buffers(&workspace, &splats);
-    for count in [frame.len(), 10, 0, frame.len()] {
+    let mut most = 0;
+    for (count, spray_threshold) in [(frame.len(), 20), (10, 7), (0, 7), (frame.len(), 27)] {
+        // Many have two splats.
+        let kernel = SurfaceKernel {
+            spray_threshold,
+            ..kernel
+        };
         workspace
             .shape(&frame[..count], 0.025, &kernel, &mut splats)
             .unwrap();
         assert_eq!(buffers(&workspace, &splats), before);
+        most = most.max(splats.splats.len());
     }
+    assert!(most > frame.len() + 50, "{most} splats");
 }

@@ -4,6 +4,7 @@
 mod common;
 
 mod citizen;
+mod classes;
 mod debug_views;
 mod fallbacks;
 mod frames;
@@ -16,5 +17,6 @@ mod rain;
 mod random_cameras;
 mod refraction;
 mod relocation;
+mod small_particles;
 mod smoothing;
 mod textures;

@@ -122,12 +122,16 @@ fn upload_splats(
         let room = room(&gpu.device);
         if fluid.splats.len() > room {
             bevy::utils::once!(warn!(
-                "a fluid of {} particles exceeds the adapter's buffers: the first {room} are drawn",
+                "a fluid of {} splats exceeds the adapter's buffers: the first {room} are drawn",
                 fluid.splats.len()
             ));
             fluid.bulk = fluid.bulk.min(room as u32);
             fluid.interior = fluid.interior.min(room as u32 - fluid.bulk);
-            fluid.spray = fluid.spray.min(room as u32 - fluid.bulk - fluid.interior);
+            let spray = fluid.spray.min(room as u32 - fluid.bulk - fluid.interior);
+            // The partial ones are the last.
+            let cut = fluid.spray - spray;
+            fluid.partial[1] = fluid.partial[1].saturating_sub(cut);
+            fluid.spray = spray;
             fluid.splats.truncate(room);
         }
         let bytes: &[u8] = bytemuck::cast_slice(&fluid.splats);
@@ -232,7 +236,8 @@ impl Splats<'_, '_> {
             let range = match class {
                 Class::Bulk => 0..bulk,
                 Class::Spray => spray..spray + fluid.spray,
-                Class::All => 0..spray + fluid.spray,
+                // Each particle once.
+                Class::All => fluid.partial[0]..spray + fluid.spray - fluid.partial[1],
             };
             if !range.is_empty() {
                 pass.set_bind_group(1, group, &[splats.transform.bytes()]);

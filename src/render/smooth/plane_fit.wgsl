@@ -3,7 +3,9 @@
 
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
 #import bevy_fluid::render::slopes::one_sided_slope
-#import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
+#import bevy_fluid::render::smooth::window::{
+    Window, accept, edge_weight, slant, tap_at, widen, window_at,
+}
 
 struct Output {
 #ifdef TO_SLOPES
@@ -27,12 +29,13 @@ fn encode_normals(window: Window, layers: vec2<f32>, slope_x: vec2<f32>, slope_y
 #ifdef WHOLE_WINDOW
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position);
+    var window = window_at(position);
     var out: Output;
     out.layers = vec4(window.center.xy, 0.0, 0.0);
     if !any(window.valid) {
         return out;
     }
+    widen(&window, slant(window, vec2(1, 0)) + slant(window, vec2(0, 1)));
     var count = vec2(0.0);
     var s = vec2(0.0);
     var sx = vec2(0.0);
@@ -102,12 +105,14 @@ fn output(layers: vec4<f32>) -> vec4<f32> {
 // Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it.
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position);
+    var window = window_at(position);
     var out: Output;
     out.layers = output(vec4(window.center.xy, 0.0, 0.0));
     if !any(window.valid) {
         return out;
     }
+    let axis = select(vec2(1, 0), vec2(0, 1), #{LINE} == 1);
+    widen(&window, slant(window, axis));
     var count = vec2(0.0);
     var s = vec2(0.0);
     var sx = vec2(0.0);
@@ -116,8 +121,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     var sxd = vec2(0.0);
     var across = vec2(0.0);
     for (var i = -#{HALF_TAPS}; i <= #{HALF_TAPS}; i += 1) {
-        let offset = select(vec2(i, 0), vec2(0, i), #{LINE} == 1);
-        let tap = tap_at(window, offset, edge_weight(window, i));
+        let tap = tap_at(window, i * axis, edge_weight(window, i));
         let w = tap.weight;
         let wd = w * (tap.value.xy - window.center.xy);
         let x = f32(i);
@@ -142,7 +146,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     var per_pixel = slope / f32(window.spacing);
     if any(window.valid & !sloped) {
         // So steep that all taps are out of range: the slope to the next pixel is used instead.
-        let beside = one_sided_slope(window.pixel, window.center.xy, select(vec2(1, 0), vec2(0, 1), #{LINE} == 1));
+        let beside = one_sided_slope(window.pixel, window.center.xy, axis);
         per_pixel = select(beside, per_pixel, sloped);
     }
 #ifdef NORMALS

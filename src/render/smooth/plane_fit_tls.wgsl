@@ -5,7 +5,9 @@
 }
 #import bevy_fluid::render::frame::frame
 #import bevy_fluid::render::slopes::one_sided_slope
-#import bevy_fluid::render::smooth::window::{Window, accept, edge_weight, tap_at, window_at}
+#import bevy_fluid::render::smooth::window::{
+    Window, accept, edge_weight, slant, tap_at, widen, window_at,
+}
 
 // Sums of squares in f32 are off by 1e-7: below this their eigenvectors are off by a thousandth.
 const SPREAD: f32 = 1e-4;
@@ -121,12 +123,13 @@ fn fit(window: Window, m: Moments, origin: vec3<f32>) -> Plane {
 
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
-    let window = window_at(position);
+    var window = window_at(position);
     var out: Output;
     out.layers = vec4(window.center.xy, 0.0, 0.0);
     if !any(window.valid) {
         return out;
     }
+    widen(&window, slant(window, vec2(1, 0)) + slant(window, vec2(0, 1)));
     let front_origin = view_from_device(window.ndc, window.center.x);
     let back_origin = view_from_device(window.ndc, -window.center.y);
     let ndc_per_pixel = vec2(2.0, -2.0) / frame.view_size * f32(window.spacing);

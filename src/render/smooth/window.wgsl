@@ -24,6 +24,9 @@ struct Smoothing {
 
 // Pixels between taps at the most: beyond it the window stops growing.
 const MAX_SPACING: i32 = 16;
+// Half of the smallest window, in pixels: where particles are smaller than pixels, neighbouring
+// pixels show different particles, which is noise and not the surface's shape.
+const MIN_HALF_WIDTH: f32 = min(3.0, f32(#{HALF_TAPS}));
 
 struct Window {
     pixel: vec2<i32>,
@@ -38,6 +41,8 @@ struct Window {
     spacing: i32,
     // Half width in taps, fractional.
     half_taps: f32,
+    // By how much the range and the bound are wider: see `widen`.
+    slack: vec2<f32>,
 }
 
 struct Tap {
@@ -68,12 +73,38 @@ fn window_at(position: vec4<f32>) -> Window {
     let d = select(-out.center.y, out.center.x, out.valid.x);
     let scale = pixels_per_metre(view_from_device(out.ndc, d));
     let half_taps = f32(#{HALF_TAPS});
-    let half_width = max(smoothing.window_radii * surface.radius * scale, 1.0);
+    let half_width = max(smoothing.window_radii * surface.radius * scale, MIN_HALF_WIDTH);
     let spacing = clamp(i32(ceil(half_width / half_taps)), 1, MAX_SPACING);
     let in_radii = smoothing.window_radii > 0.0;
     out.spacing = select(1, spacing, in_radii);
     out.half_taps = select(half_taps, min(half_width / f32(spacing), half_taps), in_radii);
+    out.slack = vec2(1.0);
     return out;
+}
+
+// How far the surface's own slope takes it over half the window along an axis, in units of the range;
+// from taps half as far, which are on the same strand. It goes on one way: a step on one side is
+// left out by the smaller of both, a ridge by their signs.
+fn slant(window: Window, axis: vec2<i32>) -> vec2<f32> {
+    if smoothing.window_radii <= 0.0 {
+        return vec2(0.0);
+    }
+    let reach = i32(0.5 * window.half_taps + 0.5);
+    let ahead = raw_tap_at(window, reach * axis).xy;
+    let behind = raw_tap_at(window, -reach * axis).xy;
+    let rise = (ahead - window.center.xy) * window.steepness;
+    let fall = (window.center.xy - behind) * window.steepness;
+    let goes_on = valid_layers(ahead) & valid_layers(behind) & (rise * fall > vec2(0.0));
+    let step = select(vec2(0.0), min(abs(rise), abs(fall)), goes_on);
+    return step * (window.half_taps / f32(reach));
+}
+
+// Seen at a grazing angle, or over pixels larger than particles, a surface leaves the range within
+// the window: the range follows it there.
+fn widen(window: ptr<function, Window>, slant: vec2<f32>) {
+    let slack = max(vec2(1.0), slant);
+    (*window).slack = slack;
+    (*window).steepness /= slack;
 }
 
 // How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
@@ -104,7 +135,7 @@ fn tap_at(window: Window, offset: vec2<i32>, edge: f32) -> Tap {
 // The new layers, except where the fit went too far, was degenerate or there was nothing to fit.
 fn accept(window: Window, fitted: vec2<f32>, good: vec2<bool>) -> vec2<f32> {
     let moved = abs(view_depths(window.map, fitted) - window.depth);
-    let near_enough = moved <= vec2(smoothing.bound);
+    let near_enough = moved <= smoothing.bound * window.slack;
     let in_range = vec2(fitted.x > 0.0 && fitted.x < INSIDE_FRONT, fitted.y < 0.0 && fitted.y >= -1.0);
     let out = select(window.center.xy, fitted, window.valid & good & near_enough & in_range);
     // Fitted each on its own, front and back of a thin sheet may pass each other: no thickness

@@ -28,9 +28,12 @@ pub struct ExtractedFluid {
     /// Particle radius in the fluid's own units.
     pub(crate) local_radius: f32,
     pub(crate) bounds: Bounds,
+    /// Numbers of splats, partial ones included.
     pub(crate) bulk: u32,
     pub(crate) interior: u32,
     pub(crate) spray: u32,
+    /// Of them, the partial ones: the first of the bulk and the last of the spray.
+    pub(crate) partial: [u32; 2],
     /// In the order bulk, interior, spray.
     pub(crate) splats: Vec<Splat>,
     /// Whether the splats are new and not uploaded yet.
@@ -88,8 +91,10 @@ pub(super) fn extract_fluids(
                 min: splats.min,
                 max: splats.max,
             };
-            (fluid.bulk, fluid.interior, fluid.spray) =
-                (splats.bulk, splats.interior, splats.spray);
+            fluid.bulk = splats.partial_bulk + splats.bulk;
+            fluid.interior = splats.interior;
+            fluid.spray = splats.spray + splats.partial_spray;
+            fluid.partial = [splats.partial_bulk, splats.partial_spray];
             fluid.fresh = true;
         }
         if let Some(fluid) = new {

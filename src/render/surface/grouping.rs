@@ -135,6 +135,7 @@ mod tests {
             bulk: 0,
             interior: 0,
             spray: 0,
+            partial: [0; 2],
         };
         let mut members: Vec<_> = fluids
             .iter()

@@ -92,13 +92,15 @@ impl Surface {
     }
 }
 
-/// Which splats of a fluid are drawn: they lie in the order bulk, interior, spray.
+/// Which splats of a fluid are drawn: they lie in the order bulk, interior, spray. The first of the
+/// bulk and the last of the spray are `partial`: their particles are in the other class as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnFluid {
     pub(crate) entity: Entity,
     pub(crate) bulk: u32,
     pub(crate) interior: u32,
     pub(crate) spray: u32,
+    pub(crate) partial: [u32; 2],
 }
 
 /// The surfaces of a view; a view without any lacks this component, and all that stages require

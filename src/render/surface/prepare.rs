@@ -311,6 +311,7 @@ impl Eye {
             bulk: fluid.bulk,
             interior: fluid.interior,
             spray: fluid.spray,
+            partial: fluid.partial,
         };
         let bounds = fluid.bounds.transformed(&eye_from_local);
         Member::new(drawn, fluid.material, fluid.radius, bounds)

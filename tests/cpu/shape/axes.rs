@@ -99,7 +99,8 @@ fn without_anisotropy_every_splat_is_the_particle() {
     let classes = |s: &FluidSplats| [s.bulk, s.interior, s.spray];
     assert_eq!(classes(&spheres), classes(&ellipsoids));
     assert!(spheres.bulk > 0 && spheres.interior > 0);
-    for splat in &spheres.splats {
+    let whole = spheres.splats.len() - spheres.partial_spray as usize;
+    for splat in &spheres.splats[spheres.partial_bulk as usize..whole] {
         let position = positions[splat.particle as usize];
         assert_eq!(*splat, Splat::sphere(position, R, splat.particle));
     }

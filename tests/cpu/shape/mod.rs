@@ -48,15 +48,16 @@ fn shape(positions: &[Vec3]) -> FluidSplats {
 /// What holds for every input.
 fn check(splats: &FluidSplats, positions: &[Vec3], kernel: &SurfaceKernel) {
     let count = splats.bulk + splats.interior + splats.spray;
-    assert_eq!(splats.splats.len(), count as usize);
+    let partial = splats.partial_bulk + splats.partial_spray;
+    assert_eq!(splats.splats.len(), (count + partial) as usize);
     let finite = positions.iter().filter(|p| p.is_finite()).count();
     assert_eq!(count as usize, finite);
     assert_eq!(splats.dropped as usize, positions.len() - finite);
-    let mut seen = vec![false; positions.len()];
+    let mut seen = vec![0; positions.len()];
     for splat in &splats.splats {
         let particle = splat.particle as usize;
         assert!(positions[particle].is_finite());
-        assert!(!std::mem::replace(&mut seen[particle], true));
+        seen[particle] += 1;
         let center = Vec3::from(splat.center);
         assert!(center.is_finite() && splat.scale > 0.0 && splat.scale.is_finite());
         let [long, middle, short] = semi_axes(splat);
@@ -66,6 +67,13 @@ fn check(splats: &FluidSplats, positions: &[Vec3], kernel: &SurfaceKernel) {
         assert!((center - half_size * (1.0 - F16)).cmpge(splats.min).all());
         assert!((center + half_size * (1.0 - F16)).cmple(splats.max).all());
     }
+    assert!(
+        seen.iter()
+            .zip(positions)
+            .all(|(&seen, p)| (1..=2).contains(&seen) == p.is_finite())
+    );
+    let twice = seen.iter().filter(|&&seen| seen == 2).count();
+    assert_eq!(twice, partial as usize);
     for sphere in splats.by_class()[1..].iter().copied().flatten() {
         assert_eq!(
             Vec3::from(sphere.center),
@@ -91,13 +99,34 @@ fn extent(splat: &Splat) -> Vec3 {
     )
 }
 
-/// The splat of a particle, and its class: 0 bulk, 1 interior, 2 spray.
+/// The splat of full size of a particle, and its class: 0 bulk, 1 interior, 2 spray.
 fn find(splats: &FluidSplats, particle: usize) -> (Splat, usize) {
     let is_it = |splat: &&Splat| splat.particle as usize == particle;
-    let mut classes = splats.by_class().into_iter().enumerate();
+    let [bulk, interior, spray] = splats.by_class();
+    let bulk = &bulk[splats.partial_bulk as usize..];
+    let spray = &spray[..splats.spray as usize];
+    let mut classes = [bulk, interior, spray].into_iter().enumerate();
     classes
         .find_map(|(class, splats)| Some((*splats.iter().find(is_it)?, class)))
         .unwrap()
+}
+
+/// Every splat, and the one of the same class in other splats, where its particle is `other`.
+fn pairs<'a>(
+    splats: &'a FluidSplats,
+    others: &'a FluidSplats,
+    other: impl Fn(usize) -> usize,
+) -> Vec<(Splat, Splat)> {
+    let classes = splats.by_class().into_iter().zip(others.by_class());
+    let pairs = classes.flat_map(|(class, others)| {
+        let other = &other;
+        class.iter().map(move |splat| {
+            let particle = other(splat.particle as usize);
+            let is_it = |other: &&Splat| other.particle as usize == particle;
+            (*splat, *others.iter().find(is_it).unwrap())
+        })
+    });
+    pairs.collect()
 }
 
 fn assert_sphere(splat: &Splat, center: Vec3, radius: f32) {
@@ -220,6 +249,7 @@ fn settings_out_of_range_are_named() {
     named(
         SurfaceKernel {
             sphere_neighbors: 17,
+            full_neighbors: 16,
             ..default
         },
         "sphere_neighbors",
@@ -326,8 +356,7 @@ fn h12_far_from_the_origin_only_the_positions_round() {
     let far: Vec<_> = near.iter().map(|p| p + offset).collect();
     let [near, far] = [near, far].map(|p| shape_with(&p, 1.0, &SurfaceKernel::default()));
     assert_eq!([near.bulk, near.interior], [far.bulk, far.interior]);
-    for splat in &near.splats {
-        let (other, _) = find(&far, splat.particle as usize);
+    for (splat, other) in pairs(&near, &far, |particle| particle) {
         assert!(
             (splat.matrix() - other.matrix())
                 .to_cols_array()
@@ -347,8 +376,7 @@ fn h13_h14_a_scaled_scene_has_scaled_splats() {
         let scaled: Vec<_> = positions.iter().map(|p| p * scale).collect();
         let scaled = shape_with(&scaled, R * scale, &SurfaceKernel::default());
         assert_eq!([scaled.bulk, scaled.spray], [original.bulk, original.spray]);
-        for splat in &scaled.splats {
-            let (other, _) = find(&original, splat.particle as usize);
+        for (splat, other) in pairs(&scaled, &original, |particle| particle) {
             assert!((splat.scale / scale - other.scale).abs() < 1e-5 * R);
             let error = splat.matrix() * scale.recip() - other.matrix();
             assert!(error.to_cols_array().iter().all(|d| d.abs() < F16 * R));
@@ -373,8 +401,7 @@ fn h36_clusters_far_apart_do_not_see_each_other() {
     let alone = shape(&cluster);
     let near_and_far = cluster.iter().flat_map(|&p| [p, p + Vec3::X * 1e5]);
     let both = shape(&near_and_far.collect::<Vec<_>>());
-    for splat in &alone.splats {
-        let (other, _) = find(&both, 2 * splat.particle as usize);
+    for (splat, other) in pairs(&alone, &both, |particle| 2 * particle) {
         assert_eq!(splat.center, other.center);
         assert_eq!(splat.axes, other.axes);
     }
@@ -389,8 +416,7 @@ fn h38_permuted_particles_make_the_same_splats() {
     let permuted: Vec<_> = order.iter().map(|&particle| positions[particle]).collect();
     let [original, permuted] = [&positions, &permuted].map(|p| shape(p));
     assert_eq!(original.interior, permuted.interior);
-    for splat in &permuted.splats {
-        let (other, _) = find(&original, order[splat.particle as usize]);
+    for (splat, other) in pairs(&permuted, &original, |particle| order[particle]) {
         assert!(Vec3::from(splat.center).distance(Vec3::from(other.center)) < 1e-5 * R);
         let error = splat.matrix() - other.matrix();
         assert!(error.to_cols_array().iter().all(|d| d.abs() < F16 * R));
@@ -446,11 +472,11 @@ proptest! {
         let again = shape_with(&positions, R, &kernel);
         prop_assert_eq!(&splats.splats, &again.splats);
         let reach = neighbor_radius * R;
-        for (class, splats) in splats.by_class().into_iter().enumerate() {
-            for splat in splats {
-                let neighbors = oracle::neighbors(&positions, splat.particle as usize, reach);
-                prop_assert_eq!(class == 2, (neighbors.len() as u32) < spray_threshold);
-            }
+        for particle in (0..positions.len()).filter(|&of| positions[of].is_finite()) {
+            let count = oracle::count(&positions, particle, reach);
+            let weight = oracle::bulk_weight(count, spray_threshold);
+            let (_, class) = find(&splats, particle);
+            prop_assert!((class == 2) == (weight < 0.5) || (weight - 0.5).abs() < 1e-4);
         }
     }
 }

@@ -70,7 +70,7 @@ fn h37_particles_on_cell_boundaries_count_once() {
         let mut positions = lattice(5, side, 0.0);
         positions.extend(lattice(4, side, 0.0).iter().map(|p| p - Vec3::splat(side)));
         let neighbors: Vec<_> = (0..positions.len())
-            .map(|of| oracle::neighbors(&positions, of, reach).len() as u32)
+            .map(|of| oracle::count(&positions, of, reach))
             .collect();
         for spray_threshold in [1, 2, 4, 6, 7, 8, 12, 19, 20, 27] {
             let kernel = SurfaceKernel {
@@ -79,15 +79,14 @@ fn h37_particles_on_cell_boundaries_count_once() {
                 ..default()
             };
             let splats = shaped(&positions, RADIUS, &kernel);
-            assert_eq!(splats.splats.len(), positions.len());
-            for splat in splats.by_class()[2] {
-                assert!(
-                    neighbors[splat.particle as usize] < spray_threshold,
-                    "side {side}"
-                );
-            }
-            let few = neighbors.iter().filter(|&&count| count < spray_threshold);
-            assert_eq!(splats.spray as usize, few.count(), "side {side}");
+            let particles = splats.bulk + splats.spray;
+            assert_eq!(particles as usize, positions.len());
+            let weight = |&count: &f64| oracle::bulk_weight(count, spray_threshold);
+            // Beside the reach by less than a rounding, a neighbour may count for a trifle.
+            let few = neighbors.iter().map(weight).filter(|&it| it < 1.0 - 1e-3);
+            let spray = splats.by_class()[2].iter();
+            let spray = spray.filter(|splat| splat.scale > 1e-3 * RADIUS);
+            assert_eq!(spray.count(), few.count(), "side {side}");
         }
     }
 }

@@ -107,8 +107,14 @@ fn what_is_summed_up_is_the_particles_volume() {
     let held = block.len() as f64 * (2.0 * f64::from(radius)).powi(3);
     let mut app = show(&PARALLEL, TRACED, |_| {});
     let area = (2.2 / f64::from(PARALLEL.size.y)).powi(2);
+    // Many particles lie between bulk and spray: they count once.
+    let between = SurfaceKernel {
+        spray_threshold: 24,
+        ..SurfaceKernel::default()
+    };
     for (kernel, softness) in [
         (SurfaceKernel::default(), 0.0),
+        (between, 0.0),
         (SurfaceKernel::default(), 1.0),
         (SurfaceKernel::EARLIER, 2.0),
     ] {

@@ -36,8 +36,8 @@ impl Default for AnisotropicKernel {
             surface_offset: 1.15,
             max_ratio: 4.0,
             radius_scale: 1.24,
-            sphere_neighbors: 8.0,
-            full_neighbors: 16.0,
+            sphere_neighbors: 7.0,
+            full_neighbors: 13.0,
         }
     }
 }
@@ -82,7 +82,9 @@ fn ellipsoid(p: DVec3, around: &[DVec3], radius: f64, kernel: &AnisotropicKernel
     });
 
     let (values, vectors) = eigen(covariance);
-    let count = around.len() as f64 - 1.0;
+    // Whole up to 0.9 R, in part beyond. The particle itself is one of them.
+    let counted = around.iter().map(|o| (10.0 * (1.0 - o.length())).min(1.0));
+    let count = counted.sum::<f64>() - 1.0;
     let width = (kernel.full_neighbors - kernel.sphere_neighbors).max(1.0);
     let blend = smoothstep((count - kernel.sphere_neighbors) / width)
         * smoothstep((values.element_sum() - SPREAD[0]) / (SPREAD[1] - SPREAD[0]));

@@ -164,7 +164,7 @@ fn ellipsoids_follow_their_neighbourhood() {
     near(semi_axes(&of_middle([7, 7, 7])), [1.24; 3]);
     // In a sheet with more neighbours than the blend needs: a disc, its ratio at the limit.
     let dense = AnisotropicKernel {
-        full_neighbors: 9.0,
+        full_neighbors: 8.0,
         ..kernel
     };
     let sheet = lattice([9, 9, 1]);
