@@ -6,8 +6,8 @@ use bevy::color::Color;
 use bevy_fluid::{
     prelude::{FluidMaterial, Medium, ScreenSpaceFluid, SurfaceKernel, Thickness},
     settings::{
-        Bilateral, CurvatureFlow, Fresnel, NarrowRange, NormalAverage, PlaneFit, PlaneFitForm,
-        Refractions, Search, Smoothing, Window,
+        Antialiasing, Bilateral, CurvatureFlow, Fresnel, NarrowRange, NormalAverage, PlaneFit,
+        PlaneFitForm, Refractions, Search, Smoothing, Window,
     },
 };
 
@@ -251,6 +251,13 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
         refractions,
         ..default
     };
+    let antialiased = |parameters: &str, antialiasing| {
+        let settings = ScreenSpaceFluid {
+            antialiasing,
+            ..default
+        };
+        Method::new("antialiasing", parameters, settings)
+    };
     let mut methods = vec![
         self::default(),
         Method::new("fast", "", ScreenSpaceFluid::FAST),
@@ -263,6 +270,8 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
             kernel: SurfaceKernel::EARLIER,
             ..Method::new(EARLIER, "", ScreenSpaceFluid::EARLIER)
         },
+        antialiased("none", Antialiasing::None),
+        antialiased("edges", Antialiasing::Edges),
         Method::new("refractions", "0", with(Refractions::Zero)),
         Method::new("refractions", "1", with(Refractions::One)),
         Method::new("refractions", "2", with(Refractions::Two)),

@@ -229,6 +229,18 @@ impl Rig {
         }))
     }
 
+    /// The part of each pixel that the liquid covers as the last frame left it: all or nothing
+    /// where edges are not antialiased.
+    pub(crate) fn coverage(&self) -> Result<Image<f64>, ReportError> {
+        let Some(data) = self.read(Layers::coverage)? else {
+            return Ok(self.fronts()?.map(|front| f64::from(front.is_some())));
+        };
+        Ok(Image::from_fn(self.camera.size, |UVec2 { x, y }| {
+            let quarters = data.u8x4(x, y).map(f64::from);
+            quarters.iter().sum::<f64>() / (4.0 * 255.0)
+        }))
+    }
+
     /// What is left of every pixel's ray.
     pub(crate) fn exits(&self) -> Result<Image<Option<ExitRay>>, ReportError> {
         let data = self.read(Layers::exits)?;

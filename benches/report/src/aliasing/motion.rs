@@ -50,7 +50,7 @@ pub(super) struct Motion {
     pub(super) ratio: f64,
     /// Share that changes by more than [`OFF`] where the truth changes by less than half as much.
     pub(super) pops: f64,
-    /// Share whose middle becomes liquid or ceases to be.
+    /// Share whose coverage changes by more than a half.
     pub(super) flips: f64,
 }
 
@@ -134,13 +134,12 @@ pub(super) fn measure(
     for camera in &walk.cameras {
         rig.aim(camera, DVec2::ZERO);
         rig.frame();
-        let there = rig.fronts()?.map(Option::is_some);
-        frames.push((rig.picture()?, there));
+        frames.push((rig.picture()?, rig.coverage()?));
     }
     // So little does the camera move that the first frame's liquid is that of all.
     let liquid = walk.truths[0].coverage.map(|covered| *covered > 0.0);
     let liquid = Some(&liquid);
-    let (pictures, there): (Vec<_>, Vec<_>) = frames.into_iter().unzip();
+    let (pictures, coverages): (Vec<_>, Vec<_>) = frames.into_iter().unzip();
     let [whole, half]: [Vec<_>; 2] = [
         walk.truths.iter().map(|truth| &truth.image).collect(),
         walk.truths.iter().map(|truth| &truth.half).collect(),
@@ -160,7 +159,9 @@ pub(super) fn measure(
     let pops = over_pairs(&judged, |(a, true_a), (b, true_b)| {
         share(&|pixel| change([a, b], pixel) > OFF && change([true_a, true_b], pixel) < 0.5 * OFF)
     });
-    let flips = over_pairs(&there, |a, b| share(&|pixel| a.get(pixel) != b.get(pixel)));
+    let flips = over_pairs(&coverages, |a, b| {
+        share(&|pixel| (*a.get(pixel) - *b.get(pixel)).abs() > 0.5)
+    });
     Ok(Motion {
         ratio: drawn / true_one.max(f64::MIN_POSITIVE),
         pops: pops.map_err(&wrong)?,

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use bevy::math::{DVec2, DVec3, UVec2};
+use bevy_fluid::{prelude::ScreenSpaceFluid, settings::Antialiasing};
 use fluid_reference::{
     Camera, Image,
     metrics::{decode_srgb, encode_srgb},
@@ -28,7 +29,13 @@ pub(super) struct Supersampled {
 
 /// A method without antialiasing of its own: what the pictures of a mean are drawn with.
 pub(super) fn unfiltered(method: &Method) -> Method {
-    method.clone()
+    Method {
+        settings: ScreenSpaceFluid {
+            antialiasing: Antialiasing::None,
+            ..method.settings
+        },
+        ..method.clone()
+    }
 }
 
 /// [`supersample`], or what it has left in a file of this name before.
