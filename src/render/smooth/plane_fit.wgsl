@@ -113,14 +113,16 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     }
     let axis = select(vec2(1, 0), vec2(0, 1), #{LINE} == 1);
     widen(&window, slant(window, axis));
-    var count = vec2(0.0);
-    var s = vec2(0.0);
+    // The centre has been read already.
+    var count = vec2<f32>(window.valid);
+    var s = count;
     var sx = vec2(0.0);
     var sxx = vec2(0.0);
     var sd = vec2(0.0);
     var sxd = vec2(0.0);
-    var across = vec2(0.0);
-    for (var i = -#{HALF_TAPS}; i <= #{HALF_TAPS}; i += 1) {
+    var across = s * window.center.zw;
+    for (var t = -#{HALF_TAPS}; t < #{HALF_TAPS}; t += 1) {
+        let i = select(t, t + 1, t >= 0);
         let tap = tap_at(window, i * axis, edge_weight(window, i));
         let w = tap.weight;
         let wd = w * (tap.value.xy - window.center.xy);
