@@ -135,7 +135,10 @@ impl Plugin for FluidRenderPlugin {
                 motion::motion
                     .in_set(FluidPasses::Motion)
                     .in_set(Core3dSystems::MainPass)
-                    .after(FluidPasses::Composite),
+                    .after(FluidPasses::Composite)
+                    // Glass writes depth as well.
+                    .before(main_transmissive_pass_3d)
+                    .before(main_transparent_pass_3d),
                 composite::give_back
                     .in_set(Core3dSystems::MainPass)
                     .after(main_transmissive_pass_3d)

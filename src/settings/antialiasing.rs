@@ -15,19 +15,20 @@ pub enum Antialiasing {
     None,
     /// Pixels that the liquid covers in part are blended with the background.
     Edges,
-    /// The same, and where the light of neighbouring pixels differs much, it is averaged over them
-    /// and over more rays through each.
+    /// The same, and where the light of a pixel differs much from its neighbours', or they see other
+    /// surfaces, it is averaged over them, and over more rays through it.
     Full {
-        /// Rays through such a pixel besides the one through its middle. Range 0..=8, default 2.
-        /// More: less noise where liquid lies behind liquid, at the cost of a trace each.
-        #[reflect(@SettingRange::new(0.0, 8.0).unit("rays").initial(2.0))]
+        /// Rays through such a pixel besides the one through its middle. Range 0..=8, default 0.
+        /// More: less noise where liquid lies behind liquid. Each costs a trace for all pixels that
+        /// a GPU draws together with such a pixel: two double the time of a splash.
+        #[reflect(@SettingRange::new(0.0, 8.0).unit("rays").initial(0.0))]
         rays: u32,
     },
 }
 
 impl Antialiasing {
-    /// Edges, and two rays where neighbours differ.
-    pub const FULL: Self = Self::Full { rays: 2 };
+    /// Edges, and averages over neighbours, without more rays.
+    pub const FULL: Self = Self::Full { rays: 0 };
 
     /// Whether the covered part of each pixel is found.
     pub(crate) fn covers(self) -> bool {

@@ -77,7 +77,7 @@ impl ScreenSpaceFluid {
     /// 1.06 of the default's; FLIP 0.53 (box) and 0.23 (ball).
     pub const ACCURATE: Self = Self {
         search: Search::Bracketed { coarse_samples: 8 },
-        antialiasing: Antialiasing::Full { rays: 8 },
+        antialiasing: Antialiasing::Full { rays: 4 },
         ..Self::DEFAULT
     };
 
@@ -164,7 +164,7 @@ impl Default for Smoothing {
 #[reflect(Clone, PartialEq)]
 pub enum Window {
     /// A number of particle radii as they appear on screen, at any distance: taps are spread out
-    /// for near particles and dropped for far ones, down to three pixels, which smooth what is
+    /// for near particles and dropped for far ones, down to three pixels to each side, which smooth what is
     /// smaller than pixels. Range 0.05..=4.
     Radii(#[reflect(@SettingRange::new(0.05, 4.0).unit("radii").logarithmic())] f32),
     /// One pixel per tap, as in the papers.

@@ -2,9 +2,9 @@
 //!
 //! One call of [`ShapeWorkspace::shape`] sorts the particles of a fluid into a grid for the
 //! neighbourhood search, computes the weighted covariance of each neighbourhood, separates bulk,
-//! interior and spray (by a weight: nothing pops from one to the other), and turns every particle into an ellipsoid that follows the surface around
-//! it (an anisotropic kernel: Yu & Turk, *Reconstructing Surfaces of Particle-Based Fluids Using
-//! Anisotropic Kernels*, ACM TOG 32(1), 2013).
+//! interior and spray (by a weight: nothing pops from one to the other), and turns every particle into
+//! an ellipsoid that follows the surface around it (an anisotropic kernel: Yu & Turk, *Reconstructing
+//! Surfaces of Particle-Based Fluids Using Anisotropic Kernels*, ACM TOG 32(1), 2013).
 //!
 //! ```
 //! use bevy::math::Vec3;

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod antialiasing;
 mod citizen;
 mod classes;
 mod debug_views;

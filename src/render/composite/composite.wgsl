@@ -46,6 +46,18 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
 }
 
 #ifdef COVERAGE
+fn is_bulk(pixel: vec2<i32>) -> bool {
+    let last = vec2<i32>(frame.view_size) - 1;
+    return load_layers(BULK, clamp(pixel, vec2(0), last)).x > 0.0;
+}
+
+// Whether a pixel of bulk lies among others: no splat may cover it alone, but all do together.
+fn is_surrounded(pixel: vec2<i32>) -> bool {
+    return is_bulk(pixel)
+        && is_bulk(pixel + vec2(1, 0)) && is_bulk(pixel - vec2(1, 0))
+        && is_bulk(pixel + vec2(0, 1)) && is_bulk(pixel - vec2(0, 1));
+}
+
 // The liquid beside a pixel whose middle it misses.
 fn beside(pixel: vec2<i32>) -> Seen {
     var sum = vec4(0.0);
@@ -74,6 +86,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     var covered = 1.0;
 #ifdef COVERAGE
     covered = dot(textureLoad(coverage, texel, 0), vec4(0.25));
+    if covered < 1.0 && is_surrounded(pixel) {
+        covered = 1.0;
+    }
     if !is_lit(seen.color) && covered > 0.0 {
         seen = beside(pixel);
     }
@@ -82,6 +97,9 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
         discard;
     }
 #ifdef DENSE
+    if !is_lit(light_of(pixel)) {
+        discard;
+    }
     let transmitted = vec3(textureLoad(radiance, texel, 0).a, textureLoad(transmission, texel, 0).rg);
     if max(transmitted.r, max(transmitted.g, transmitted.b)) > 0.5 {
         discard;

@@ -63,7 +63,9 @@ impl ResolveKey {
             ShaderDefVal::UInt("RAYS".into(), self.count),
         ];
         let rays = self.rays.shader_defs();
+        let more = (self.count > 0).then(|| "MORE_RAYS".into());
         own.into_iter()
+            .chain(more)
             .chain(rays)
             .chain(self.background.shader_defs())
     }

@@ -291,9 +291,11 @@ fn coverage_of(in: EllipsoidVertex) -> vec4<f32> {
     // twice that over R.
     let from_center = sqrt(max(1.0 - value, vec4(1e-6)));
     let distance = 2.0 * from_center * (1.0 - from_center) / max(slope, vec4(1e-6));
-    // Quarters are half a pixel wide; no more of one is covered than the ellipsoid's area.
-    let area = 4.0 * PI * inverseSqrt(max(in.bend.x * in.bend.z - 0.25 * in.bend.y * in.bend.y, 1e-12));
-    return clamp(0.5 + 2.0 * distance, vec4(0.0), vec4(min(area, 1.0)));
+    // Quarters are half a pixel wide. Of circles smaller than that the ramp adds up to more than
+    // their area, to π(R² + 1/48) in all.
+    let area = PI * inverseSqrt(max(in.bend.x * in.bend.z - 0.25 * in.bend.y * in.bend.y, 1e-12));
+    let part = min(1.083 * area / (area + PI / 48.0), 1.0);
+    return part * clamp(0.5 + 2.0 * distance, vec4(0.0), vec4(1.0));
 }
 #endif
 

@@ -25,16 +25,31 @@ struct Output {
     @builtin(frag_depth) depth: f32,
 }
 
+fn front_at(texel: vec2<i32>) -> f32 {
+    return max(textureLoad(bulk_layers, texel, 0).x, textureLoad(spray_layers, texel, 0).x);
+}
+
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let pixel = vec2<i32>(pixel_from_camera(position));
-    let texel = texel_at(pixel);
-    let bulk = textureLoad(bulk_layers, texel, 0).xy;
-    let spray = textureLoad(spray_layers, texel, 0).xy;
-    var depth = max(bulk.x, spray.x);
+    var texel = texel_at(pixel);
+    var depth = front_at(texel);
+    if !has_front(vec2(depth, 0.0)) {
+        // Mostly covered, but not in its middle: the composite takes the nearest neighbour's depth.
+        for (var k = 0; k < 9; k += 1) {
+            let beside = texel_at(pixel + vec2(k % 3, k / 3) - 1);
+            let front = front_at(beside);
+            if front > depth {
+                depth = front;
+                texel = beside;
+            }
+        }
+    }
     if !has_front(vec2(depth, 0.0)) {
         discard;
     }
+    let bulk = textureLoad(bulk_layers, texel, 0).xy;
+    let spray = textureLoad(spray_layers, texel, 0).xy;
     if depth >= INSIDE_FRONT {
         // The eye is in the liquid, and sees its far surface.
         depth = -select(spray, bulk, bulk.x >= INSIDE_FRONT).y;

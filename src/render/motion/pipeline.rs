@@ -138,13 +138,17 @@ impl SpecializedRenderPipeline for MotionPipeline {
     }
 }
 
+fn is_wanted(variant: &Variant) -> bool {
+    variant.plan.motion_vectors && variant.debug_view.is_none()
+}
+
 impl Stage for MotionPipeline {
     const LABEL: &'static str = SPAN;
     type Uniform = GpuMotion;
     type State = MotionTextures;
 
     fn keys(&self, variant: &Variant) -> Vec<MotionKey> {
-        if !variant.plan.motion_vectors || variant.debug_view.is_some() {
+        if !is_wanted(variant) {
             return Vec::new();
         }
         let samples = variant.samples;
@@ -176,7 +180,7 @@ impl Stage for MotionPipeline {
         inputs: &Inputs,
     ) {
         let drawn = surface.drawn.as_ref();
-        let wanted = drawn.is_some_and(|variant| !self.keys(variant).is_empty());
+        let wanted = drawn.is_some_and(is_wanted);
         let (gpu, size) = (inputs.gpu, layers.size());
         let label = "fluid_displacement";
         ensure(

@@ -28,6 +28,9 @@ const MAX_SPACING: i32 = 16;
 // pixels show different particles, which is noise and not the surface's shape.
 const MIN_HALF_WIDTH: f32 = min(3.0, f32(#{HALF_TAPS}));
 
+// By how much the range is widened at the most: strands behind strands may rise like a slope.
+const MAX_SLACK: f32 = 8.0;
+
 struct Window {
     pixel: vec2<i32>,
     ndc: vec2<f32>,
@@ -102,7 +105,7 @@ fn slant(window: Window, axis: vec2<i32>) -> vec2<f32> {
 // Seen at a grazing angle, or over pixels larger than particles, a surface leaves the range within
 // the window: the range follows it there.
 fn widen(window: ptr<function, Window>, slant: vec2<f32>) {
-    let slack = max(vec2(1.0), slant);
+    let slack = clamp(slant, vec2(1.0), vec2(MAX_SLACK));
     (*window).slack = slack;
     (*window).steepness /= slack;
 }
