@@ -17,8 +17,6 @@ pub(crate) struct Displacements {
     positions: Vec<Vec3>,
     ids: Vec<u32>,
     generation: u64,
-    /// The time since then. Unit: s.
-    seconds: f32,
     /// (id, index) in the order of the ids, unless the particles are in that order.
     sorted: Vec<(u32, u32)>,
 }
@@ -26,8 +24,7 @@ pub(crate) struct Displacements {
 impl Displacements {
     /// Measures from where the same ids were. Particles that are new, or have no ids, come from where
     /// their velocities say; those without velocities from where they are.
-    fn measure(&mut self, particles: &FluidParticles) {
-        let seconds = self.seconds;
+    fn measure(&mut self, particles: &FluidParticles, seconds: f32) {
         let FluidParticles { positions, .. } = particles;
         let velocities = particles.whole_velocities();
         let by_velocity = |i: usize| velocities.get(i).map_or(Vec3::ZERO, |v| *v * seconds);
@@ -73,7 +70,6 @@ impl Displacements {
 
     fn remember(&mut self, particles: &FluidParticles, generation: u64) {
         self.generation = generation;
-        self.seconds = 0.0;
         self.positions.clone_from(&particles.positions);
         self.ids.clear();
         self.ids.extend_from_slice(particles.whole_ids());
@@ -100,9 +96,8 @@ pub(super) fn measure_displacements(
         match displacements {
             Some(mut displacements) if is_known => {
                 displacements.values.clear();
-                displacements.seconds += seconds;
                 if displacements.generation != generation {
-                    displacements.measure(particles);
+                    displacements.measure(particles, seconds);
                     displacements.remember(particles, generation);
                 }
             }
@@ -138,8 +133,7 @@ mod tests {
     fn measured(before: &FluidParticles, now: &FluidParticles) -> Vec<Vec3> {
         let mut displacements = Displacements::default();
         displacements.remember(before, 0);
-        displacements.seconds = 0.5;
-        displacements.measure(now);
+        displacements.measure(now, 0.5);
         let values = displacements.values.iter();
         values.map(|&[x, y, z, _]| vec3(x, y, z)).collect()
     }
