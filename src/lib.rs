@@ -65,7 +65,9 @@
 //!
 //! # Antialiasing, motion blur and depth of field
 //!
-//! Bevy's ways of antialiasing all work with liquids. `TemporalAntiAliasing` and `MotionBlur` read
+//! The liquid's own edges are antialiased by the part of each pixel that it covers, and its inside where
+//! neighbouring pixels differ: see [`Antialiasing`]. Bevy's ways of antialiasing all work with liquids as
+//! well, and none is needed. `TemporalAntiAliasing` and `MotionBlur` read
 //! motion vectors, which are made for cameras that have a
 //! [`MotionVectorPrepass`](bevy::core_pipeline::prepass::MotionVectorPrepass), as both require. They
 //! follow the camera, the fluid's transform, and each particle: by [`FluidParticles::ids`] from where

@@ -111,10 +111,10 @@ impl SpecializedRenderPipeline for SplatPipeline {
             SplatOutput::Merge => return self.merge.descriptor(),
         };
         let mut fragment = fragment(&self.shader, shader_defs.clone(), formats, Some(blend));
-        if output == SplatOutput::Fronts {
-            if let Some(Some(layers)) = fragment.targets.first_mut() {
-                layers.write_mask = ColorWrites::RED;
-            }
+        if output == SplatOutput::Fronts
+            && let Some(Some(layers)) = fragment.targets.first_mut()
+        {
+            layers.write_mask = ColorWrites::RED;
         }
         RenderPipelineDescriptor {
             depth_stencil: compare.and_then(|compare| depth_state(true, compare)),
