@@ -71,6 +71,7 @@ fn the_code_of_every_kind_of_camera_compiles() {
         ScreenSpaceFluid::FAST,
         ScreenSpaceFluid {
             refractions: Refractions::One,
+            antialiasing: Antialiasing::Edges,
             ..default()
         }
     );
