@@ -7,7 +7,10 @@ use super::truth::{supersample, unfiltered};
 use crate::{methods, rig::Rig, scenes};
 
 fn rig(size: &str) -> (scenes::Scene, Rig) {
-    let out = std::env::temp_dir();
+    // Each test's own: options write to it to see whether they may.
+    let test = std::thread::current();
+    let test = test.name().unwrap_or("test").replace("::", "-");
+    let out = std::env::temp_dir().join(format!("{test}-{}", std::process::id()));
     let words = ["aliasing", "--size", size, "--out"].map(std::ffi::OsString::from);
     let options = crate::Options::parse_from(words.into_iter().chain([out.into()])).unwrap();
     let scene = scenes::make(&options, "cube-top").unwrap().unwrap();
