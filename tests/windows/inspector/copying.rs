@@ -31,7 +31,8 @@ fn settings_are_copied_as_code() {
     let mut app = opened();
     let mut cameras = app.world_mut().query::<&mut ScreenSpaceFluid>();
     *cameras.single_mut(app.world_mut()).unwrap() = ScreenSpaceFluid::FAST;
-    let settings = "ScreenSpaceFluid {\n    refractions: Refractions::One,\n    ..default()\n}";
+    let settings = "ScreenSpaceFluid {\n    refractions: Refractions::One,\n    \
+        antialiasing: Antialiasing::Edges,\n    ..default()\n}";
     assert_eq!(copied(&mut app, "Copy as Rust"), settings);
 
     let camera = copied(&mut app, "copy camera");
