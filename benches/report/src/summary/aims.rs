@@ -3,37 +3,10 @@
 use crate::{Table, methods};
 
 use super::{
+    aim::Aim,
     antialiasing,
     markdown::{Rows, number},
 };
-
-/// A figure that was aimed for.
-pub(super) struct Aim {
-    what: String,
-    wanted: String,
-    got: f64,
-    reached: bool,
-}
-
-impl Aim {
-    pub(super) fn at_most(what: impl Into<String>, got: Option<f64>, most: f64) -> Option<Self> {
-        Some(Self {
-            what: what.into(),
-            wanted: format!("≤ {}", number(Some(most))),
-            got: got?,
-            reached: got? <= most,
-        })
-    }
-
-    pub(super) fn at_least(what: impl Into<String>, got: Option<f64>, least: f64) -> Option<Self> {
-        Some(Self {
-            what: what.into(),
-            wanted: format!("≥ {least}"),
-            got: got?,
-            reached: got? >= least,
-        })
-    }
-}
 
 pub(super) fn text(table: &Table) -> String {
     let mut aims = Vec::new();

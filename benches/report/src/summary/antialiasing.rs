@@ -1,6 +1,6 @@
 //! Pictures against the means over their pixels.
 
-use super::{aims::Aim, markdown::Rows};
+use super::{aim::Aim, markdown::Rows};
 use crate::{Table, methods};
 
 /// Every method's errors on every scene.

@@ -1,5 +1,6 @@
 //! The report in words and tables.
 
+mod aim;
 mod aims;
 mod antialiasing;
 mod failures;
