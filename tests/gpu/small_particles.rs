@@ -60,21 +60,10 @@ fn ball() -> Vec<Vec3> {
     inside.map(|p| p + CENTER).collect()
 }
 
-/// Front point and normal of every pixel of the bulk at least `margin` pixels from the border.
+/// Front points and normals, at least `margin` pixels from the border.
 fn surface(view: &View, app: &App, margin: u32) -> Vec<(DVec3, DVec3)> {
-    let layers = read(app, Layers::bulk);
-    let normals = read(app, Layers::bulk_normals);
-    pixels(view.size)
-        .filter(|p| p.cmpge(UVec2::splat(margin)).all() && (p + margin).cmplt(view.size).all())
-        .filter_map(|pixel| {
-            let [front, _] = layers.f32x2(pixel.x, pixel.y);
-            let [x, y, ..] = normals.f16x4(pixel.x, pixel.y);
-            (front > 0.0).then(|| {
-                let point = view.unproject(View::center(pixel), front);
-                (point, decode_normal([x, y]))
-            })
-        })
-        .collect()
+    let pixels = super::smoothing::surface(view, app, margin).into_iter();
+    pixels.map(|(_, point, normal)| (point, normal)).collect()
 }
 
 /// What is off.

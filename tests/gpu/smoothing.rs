@@ -48,7 +48,7 @@ fn bilateral() -> ScreenSpaceFluid {
 }
 
 /// Front point and normal of every pixel of the bulk at least `margin` pixels from the border.
-fn surface(view: &View, app: &App, margin: u32) -> Vec<(UVec2, DVec3, DVec3)> {
+pub(super) fn surface(view: &View, app: &App, margin: u32) -> Vec<(UVec2, DVec3, DVec3)> {
     let layers = read(app, Layers::bulk);
     let normals = read(app, Layers::bulk_normals);
     pixels(view.size)

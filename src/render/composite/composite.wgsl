@@ -3,7 +3,7 @@
 #import bevy_fluid::render::background::scene_color
 #import bevy_fluid::render::frame::frame
 #import bevy_fluid::render::functions::{has_back, nearest_scene_depth, pixel_from_camera, texel_at}
-#import bevy_fluid::render::lit::{is_lit, light_of, tame}
+#import bevy_fluid::render::lit::{is_lit, light_of, tent}
 #import bevy_fluid::render::refract::layers::{BULK, SPRAY, load_layers}
 #import bevy_fluid::render::types::INSIDE_FRONT
 #ifdef RESOLVE
@@ -67,7 +67,7 @@ fn beside(pixel: vec2<i32>) -> Seen {
         for (var i = -1; i <= 1; i += 1) {
             let found = light_of(pixel + vec2(i, j));
             if is_lit(found) {
-                let weight = f32((2 - abs(i)) * (2 - abs(j))) * tame(found);
+                let weight = tent(vec2(i, j), found);
                 sum += weight * found;
                 total += weight;
                 depth = max(depth, depth_at(pixel + vec2(i, j)));
@@ -83,13 +83,14 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let pixel = vec2<i32>(pixel_from_camera(position));
     let texel = texel_at(pixel);
     var seen = Seen(light_of(pixel), depth_at(pixel));
+    let is_hit = is_lit(seen.color);
     var covered = 1.0;
 #ifdef COVERAGE
     covered = dot(textureLoad(coverage, texel, 0), vec4(0.25));
     if covered < 1.0 && is_surrounded(pixel) {
         covered = 1.0;
     }
-    if !is_lit(seen.color) && covered > 0.0 {
+    if !is_hit && covered > 0.0 {
         seen = beside(pixel);
     }
 #endif
@@ -97,7 +98,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
         discard;
     }
 #ifdef DENSE
-    if !is_lit(light_of(pixel)) {
+    if !is_hit {
         discard;
     }
     let transmitted = vec3(textureLoad(radiance, texel, 0).a, textureLoad(transmission, texel, 0).rg);
@@ -114,7 +115,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
 #else
     out.color = seen.color;
 #ifdef RESOLVE
-    if is_lit(light_of(pixel)) {
+    if is_hit {
         out.color = resolved(pixel, seen.color);
     }
 #endif

@@ -5,7 +5,7 @@
 #import bevy_fluid::render::background::{background, color_at, light_through}
 #import bevy_fluid::render::frame::{frame, surface}
 #import bevy_fluid::render::functions::{depth_map, depth_slope, ndc_from_pixel}
-#import bevy_fluid::render::lit::{is_lit, light_of, tame}
+#import bevy_fluid::render::lit::{is_lit, light_of, tame, tent}
 #import bevy_fluid::render::refract::layers::{
     BULK, FRONT, SPRAY, layer_depths, layer_normal, load_layers, on_screen,
 }
@@ -63,7 +63,7 @@ fn resolved(pixel: vec2<i32>, own: vec4<f32>) -> vec4<f32> {
     // A particle apart in device depth, to first order.
     let slope = depth_slope(depth_map(ndc_from_pixel(at)), vec2(front.depth)).x;
     let same_depth = 2.0 * surface.radius / abs(slope);
-    // The neighbours' mean by a tent two pixels wide to each side.
+    // The neighbours' mean.
     var sum = vec4(0.0);
     var total = 0.0;
     var contrast = 0.0;
@@ -73,7 +73,7 @@ fn resolved(pixel: vec2<i32>, own: vec4<f32>) -> vec4<f32> {
             let beside = pixel + vec2(i, j);
             let found = light_of(beside);
             let there = is_lit(found);
-            let weight = select(0.0, f32((2 - abs(i)) * (2 - abs(j))), there) * tame(found);
+            let weight = tent(vec2(i, j), found);
             sum += weight * found;
             total += weight;
             if abs(i) + abs(j) == 1 {
