@@ -19,8 +19,9 @@ pub enum Antialiasing {
     /// surfaces, it is averaged over them, and over more rays through it.
     Full {
         /// Rays through such a pixel besides the one through its middle. Range 0..=8, default 0.
-        /// More: less noise where liquid lies behind liquid. Each costs a trace for all pixels that
-        /// a GPU draws together with such a pixel: two double the time of a splash.
+        /// More: less noise where liquid lies behind liquid, and droplets of a few pixels nearer to
+        /// the truth. Only those pixels are traced again; two rays add a fifth to a quarter to the
+        /// time of a splash.
         #[reflect(@SettingRange::new(0.0, 8.0).unit("rays").initial(0.0))]
         rays: u32,
     },

@@ -10,13 +10,11 @@
 #import bevy_fluid::render::resolve::resolved
 #endif
 
-@group(1) @binding(7) var coverage: texture_2d<f32>;
-#ifdef DENSE
-// The transmitted fractions of red in its alpha, and of green and blue: in the places of normals,
-// which unbent liquids have not, as WebGPU allows no more than 16 textures.
+// The transmitted fraction of red in its alpha; or the mean light of rays.
 @group(1) @binding(1) var radiance: texture_2d<f32>;
+// The transmitted fractions of green and blue.
 @group(1) @binding(3) var transmission: texture_2d<f32>;
-#endif
+@group(1) @binding(5) var coverage: texture_2d<f32>;
 
 struct Output {
 #ifndef DEPTH_ALONE
@@ -116,7 +114,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     out.color = seen.color;
 #ifdef RESOLVE
     if is_hit {
-        out.color = resolved(pixel, seen.color);
+        var rays = seen.color;
+#ifdef MORE_RAYS
+        rays = textureLoad(radiance, texel, 0);
+#endif
+        out.color = resolved(pixel, seen.color, rays);
     }
 #endif
 #ifdef COVERAGE

@@ -3,7 +3,7 @@
 
 #import bevy_fluid::render::functions::texel_at
 
-@group(1) @binding(6) var lights: texture_2d<f32>;
+@group(1) @binding(4) var lights: texture_2d<f32>;
 
 // From the liquid and through it at a pixel.
 fn light_of(pixel: vec2<i32>) -> vec4<f32> {

@@ -2,6 +2,7 @@
 
 mod behind;
 mod pipeline;
+mod rays;
 mod scene;
 mod shade;
 
@@ -27,6 +28,7 @@ use bevy::{
 pub(super) use self::behind::{give_back, take_behind};
 use self::{
     behind::{BehindLiquid, ViewItems},
+    rays::Rays,
     scene::SceneColor,
 };
 pub(super) use self::{pipeline::CompositePipeline, shade::ShadePipeline};
@@ -49,10 +51,12 @@ pub(super) fn plugin(app: &mut App) {
     load_shader_library!(app, "lit.wgsl");
     load_shader_library!(app, "resolve.wgsl");
     embedded_asset!(app, "shade.wgsl");
+    embedded_asset!(app, "rays.wgsl");
     embedded_asset!(app, "composite.wgsl");
     add_stage::<ShadePipeline>(app);
     add_stage::<CompositePipeline>(app);
     scene::plugin(app);
+    rays::plugin(app);
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
         render_app
             .init_resource::<BehindLiquid>()
@@ -72,6 +76,7 @@ type Composited<'a> = (
     &'a Layers,
     &'a Kept<ShadePipeline>,
     &'a Kept<CompositePipeline>,
+    &'a Rays,
 );
 
 /// The pass: all surfaces of the view, each composited over the previous ones.
@@ -130,6 +135,8 @@ pub(super) fn composite(
                 continue;
             };
             shade(ctx, surface, (lighting, scene), &cache);
+            let place = (surface.1, surface.2);
+            surface.5.trace(ctx, place, (lighting, scene), &cache);
             let pass = RenderPassDescriptor {
                 label: Some(SPAN),
                 color_attachments: &[Some(target.get_color_attachment())],
@@ -165,7 +172,7 @@ pub(super) fn composite(
 /// The light of a surface's pixels.
 fn shade(
     ctx: &mut RenderContext,
-    (surface, frame, layers, kept, _): Composited,
+    (surface, frame, layers, kept, ..): Composited,
     (lighting, scene): (&ViewLighting, &BindGroup),
     cache: &PipelineCache,
 ) {
@@ -189,7 +196,7 @@ fn shade(
 fn paint(
     ctx: &mut RenderContext,
     pass: RenderPassDescriptor,
-    (_, frame, _, _, kept): Composited,
+    (_, frame, _, _, kept, _): Composited,
     pipeline: Option<CachedRenderPipelineId>,
     (lighting, scene): (&ViewLighting, &BindGroup),
     cache: &PipelineCache,
@@ -202,7 +209,7 @@ fn paint(
     };
     let mut pass = ctx.begin_tracked_render_pass(pass);
     frame.enter(&mut pass, pipeline);
-    pass.set_bind_group(1, group, &[kept.offset.bytes()]);
+    pass.set_bind_group(1, group, &[]);
     pass.set_bind_group(2, lighting, &offset);
     pass.set_bind_group(3, scene, &[]);
     frame.draw_tiles(&mut pass);

@@ -6,19 +6,18 @@ use bevy::{
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, MultisampleState,
         RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, TextureFormat,
-        binding_types::uniform_buffer,
     },
     shader::ShaderDefVal,
 };
 
-use super::{SPAN, scene::SceneColorLayout, shade::ShadeKey};
+use super::{SPAN, scene::SceneColorLayout};
 use crate::render::{
     frame::{
-        FrameLayout, Group, Input, Inputs, Layers, Stage,
+        FrameLayout, Group, Input, Inputs, Layers, NoUniform, Stage,
         pipelines::{Tiles, defs, depth_state, fragment, tile_pipeline, unfiltered},
     },
     lighting::LightingLayout,
-    refract::{GpuTracing, RefractKey, layer_defs},
+    refract::layer_defs,
     surface::{Surface, Variant},
 };
 use crate::settings::Antialiasing;
@@ -33,42 +32,8 @@ pub(crate) struct CompositeKey {
     /// Whether there are bulk and spray.
     pub(crate) bulk: bool,
     pub(crate) spray: bool,
-    /// How the light of pixels is averaged whose neighbours differ.
-    pub(crate) resolve: Option<ResolveKey>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct ResolveKey {
-    /// Through each of them, besides the first.
-    pub(crate) count: u32,
-    pub(crate) rays: RefractKey,
-    pub(crate) background: ShadeKey,
-}
-
-impl ResolveKey {
-    fn of(variant: &Variant) -> Option<Self> {
-        let Antialiasing::Full { rays } = variant.plan.antialiasing else {
-            return None;
-        };
-        Some(Self {
-            count: rays,
-            rays: RefractKey::new(&variant.plan, &variant.settings),
-            background: ShadeKey::of(variant),
-        })
-    }
-
-    fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
-        let own = [
-            "RESOLVE".into(),
-            ShaderDefVal::UInt("RAYS".into(), self.count),
-        ];
-        let rays = self.rays.shader_defs();
-        let more = (self.count > 0).then(|| "MORE_RAYS".into());
-        own.into_iter()
-            .chain(more)
-            .chain(rays)
-            .chain(self.background.shader_defs())
-    }
+    /// The light of pixels is averaged whose neighbours differ: over them, and over so many rays.
+    pub(crate) resolve: Option<u32>,
 }
 
 /// What is written. If surfaces wrote their depth at once, one painted later would be cut off
@@ -120,8 +85,6 @@ impl FromWorld for CompositePipeline {
                         unfiltered(),
                         unfiltered(),
                         unfiltered(),
-                        uniform_buffer::<GpuTracing>(true),
-                        unfiltered(),
                         unfiltered(),
                     ),
                 ),
@@ -141,9 +104,10 @@ impl SpecializedRenderPipeline for CompositePipeline {
             ("COVERAGE", key.covers),
             ("DENSE", key.part == CompositePart::DenseDepth),
         ]);
-        match &key.resolve {
-            Some(resolve) => shader_defs.extend(resolve.shader_defs()),
-            None => shader_defs.extend(layer_defs(key.bulk, key.spray)),
+        shader_defs.extend(layer_defs(key.bulk, key.spray));
+        if let Some(rays) = key.resolve {
+            shader_defs.extend(defs([("RESOLVE", true), ("MORE_RAYS", rays > 0)]));
+            shader_defs.push(ShaderDefVal::UInt("RAYS".into(), rays));
         }
         let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
         let layouts = [&self.layout, &self.lighting, &self.scene].map(Clone::clone);
@@ -167,7 +131,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
 
 impl Stage for CompositePipeline {
     const LABEL: &'static str = SPAN;
-    type Uniform = GpuTracing;
+    type Uniform = NoUniform;
     type State = Group;
 
     fn keys(&self, variant: &Variant) -> Vec<CompositeKey> {
@@ -184,30 +148,20 @@ impl Stage for CompositePipeline {
             covers,
             bulk: variant.plan.bulk,
             spray: variant.plan.spray,
-            resolve: ResolveKey::of(variant).filter(|_| part.light()),
+            resolve: match variant.plan.antialiasing {
+                Antialiasing::Full { rays } if part.light() => Some(rays),
+                _ => None,
+            },
         };
         parts.iter().map(key).collect()
     }
 
-    fn uniform(surface: &Surface) -> Option<GpuTracing> {
-        GpuTracing::of(surface)
-    }
-
-    fn prepare(&self, group: &mut Group, surface: &Surface, layers: &Layers, inputs: &Inputs) {
-        // Dense media read these; they have no normals.
-        let index_one = surface.plan().is_some_and(|plan| plan.index_one);
-        let [first, second] = if index_one {
-            [&layers.radiance, &layers.transmission]
-        } else {
-            [&layers.bulk_normals, &layers.spray_normals]
-        };
+    fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
         let lit = [
             inputs.or_nothing(&layers.bulk),
-            inputs.or_nothing(first),
+            Input::texture(layers.radiance.as_ref()),
             inputs.or_nothing(&layers.spray),
-            inputs.or_nothing(second),
-            inputs.or_nothing(&layers.thickness),
-            inputs.uniform.clone(),
+            Input::texture(layers.transmission.as_ref()),
             Input::texture(layers.light.as_ref()),
             inputs.or_nothing(&layers.coverage),
         ];

@@ -52,7 +52,7 @@ fn init_layout(mut commands: Commands) {
     commands.insert_resource(SceneColorLayout(BindGroupLayoutDescriptor::new(
         "fluid_scene_color_layout",
         &BindGroupLayoutEntries::sequential(
-            ShaderStages::FRAGMENT,
+            ShaderStages::FRAGMENT | ShaderStages::COMPUTE,
             (
                 filtered(),
                 filtered(),
@@ -100,7 +100,7 @@ fn wait_for_blit(
                 cache.block_on_render_pipeline(id);
             }
             if cache.get_render_pipeline(id).is_none() {
-                surface.waiting = Some(Waiting::new(SPAN, id, &cache));
+                surface.waiting = Some(Waiting::new(SPAN, cache.get_render_pipeline_state(id)));
             }
         }
     }

@@ -28,12 +28,14 @@ struct EllipsoidVertex {
     // Form 0: projected centre in pixels and device depth.
     @location(3) @interpolate(flat) center: vec3<f32>,
     @location(4) @interpolate(flat) form: u32,
-#ifdef COVERAGE
-    // Form 0: the outline, where this is zero: x + yz · o + (o.x², o.x o.y, o.y²) · `bend`, for the
-    // offset o from the projected centre in pixels. It is 1 − (distance / radius)² for a circle.
+    // Form 0, for the offset o from the projected centre in pixels: 1 − (distance / radius)² of a line
+    // of sight from the centre is outline.x + outline.yz · o + bend.xyz · (o.x², o.x o.y, o.y²), and its
+    // device depth half way through the ellipsoid chord.x + chord.yz · o from the centre's; chord.w is
+    // half the depth that a line through the centre spends inside.
     @location(5) @interpolate(flat) outline: vec3<f32>,
-    @location(6) @interpolate(flat) bend: vec3<f32>,
-#endif
+    // w: see `coverage_of`.
+    @location(6) @interpolate(flat) bend: vec4<f32>,
+    @location(7) @interpolate(flat) chord: vec4<f32>,
 #ifdef MOTION
     // How far the centre has moved in the world, and where it is from the eye.
     @location(8) @interpolate(flat) displacement: vec3<f32>,
@@ -189,23 +191,26 @@ fn place(splat_index: u32, corner: u32) -> EllipsoidVertex {
         out.y = vec4(dy, dot(perspective, dy));
         out.d = vec4(sphere[2], dot(perspective, sphere[2]));
         out.center = vec3(pixel_from_ndc(device.xy), device.z);
-#ifdef COVERAGE
         // The form at the point of a line of sight that is nearest to the centre.
         let middle = vec4(0.0, 0.0, 0.0, 1.0);
         let dd = form(out.d, out.d);
-        let along = vec3(form(out.x, out.d), form(out.y, out.d), form(middle, out.d));
+        let along = vec3(form(middle, out.d), form(out.x, out.d), form(out.y, out.d));
         let ratio = along / dd;
+        out.chord = vec4(-ratio, inverseSqrt(dd));
         out.outline = -vec3(
-            form(middle, middle) - along.z * ratio.z,
-            2.0 * (form(middle, out.x) - along.z * ratio.x),
-            2.0 * (form(middle, out.y) - along.z * ratio.y),
+            form(middle, middle) - along.x * ratio.x,
+            2.0 * (form(middle, out.x) - along.x * ratio.y),
+            2.0 * (form(middle, out.y) - along.x * ratio.z),
         );
-        out.bend = -vec3(
-            form(out.x, out.x) - along.x * ratio.x,
-            2.0 * (form(out.x, out.y) - along.x * ratio.y),
-            form(out.y, out.y) - along.y * ratio.y,
+        let bend = -vec3(
+            form(out.x, out.x) - along.y * ratio.y,
+            2.0 * (form(out.x, out.y) - along.y * ratio.z),
+            form(out.y, out.y) - along.z * ratio.z,
         );
-#endif
+        // Quarters of a pixel are half a pixel wide. Of circles smaller than that, with radius R, a
+        // ramp adds up to more than their area, to π(R² + 1/48) in all.
+        let area = PI * inverseSqrt(max(bend.x * bend.z - 0.25 * bend.y * bend.y, 1e-12));
+        out.bend = vec4(bend, min(1.083 * area / (area + PI / 48.0), 1.0));
     }
     return out;
 }
@@ -234,70 +239,59 @@ fn polar_normal(in: EllipsoidVertex, a: vec4<f32>, ndc: vec2<f32>, depth: f32) -
     return (plane * view.clip_from_view).xyz;
 }
 
-// The line of sight through a point of the screen, about its point half way through the ellipsoid.
-struct DeviceChord {
-    nearest: vec4<f32>,
-    middle: f32,
-    // Negative where it misses.
-    disc: f32,
-}
-
-fn chord_at(in: EllipsoidVertex, offset: vec2<f32>, dd: f32) -> DeviceChord {
-    let a = vec4(0.0, 0.0, 0.0, 1.0) + offset.x * in.x + offset.y * in.y;
-    let middle = -form(a, in.d) / dd;
-    let nearest = a + middle * in.d;
-    return DeviceChord(nearest, middle, -form(nearest, nearest));
+// 1 − (distance / radius)² from the centre: negative where a line of sight misses.
+fn depth_within(in: EllipsoidVertex, o: vec2<f32>) -> f32 {
+    return in.outline.x + o.x * (in.outline.y + in.bend.x * o.x + in.bend.y * o.y)
+        + o.y * (in.outline.z + in.bend.z * o.y);
 }
 
 // Both depths from one quadratic.
 fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     var out: Intersection;
-    let dd = form(in.d, in.d);
     let pixel = pixel_from_texture(in.position);
-    var chord = chord_at(in, pixel - in.center.xy, dd);
-    if chord.disc < 0.0 && all(floor(pixel) == floor(in.center.xy)) {
+    var offset = pixel - in.center.xy;
+    var within = depth_within(in, offset);
+    if within < 0.0 && all(floor(pixel) == floor(in.center.xy)) {
         // Too small for this pixel's centre: the splat is intersected at its own centre, or moving
         // droplets would flicker as they pass the centres of pixels.
-        chord = chord_at(in, vec2(0.0), dd);
+        offset = vec2(0.0);
+        within = in.outline.x;
     }
-    let nearest = chord.nearest;
-    let half_chord = sqrt(max(chord.disc, 0.0) / dd);
-    let front = in.center.z + (chord.middle + half_chord);
-    let back = in.center.z + (chord.middle - half_chord);
+    let middle = in.chord.x + dot(in.chord.yz, offset);
+    let half_chord = sqrt(max(within, 0.0)) * in.chord.w;
+    let front = in.center.z + (middle + half_chord);
+    let back = in.center.z + (middle - half_chord);
     // Not beyond an orthographic far plane, and a number at all.
-    out.hit = chord.disc >= 0.0 && front > 0.0;
+    out.hit = within >= 0.0 && front > 0.0;
     // A front is kept a step below INSIDE_FRONT, which has a meaning of its own.
     out.layers = vec2(min(front, 0.9999999), -clamp(back, 1e-30, 1.0));
     let ndc = ndc_from_pixel(pixel);
-    out.front_normal = polar_normal(in, nearest + half_chord * in.d, ndc, front);
+    let flat = vec4(0.0, 0.0, 0.0, 1.0) + offset.x * in.x + offset.y * in.y;
+    out.front_normal = polar_normal(in, flat + (middle + half_chord) * in.d, ndc, front);
     // Outward is away from the viewer there.
-    out.back_normal = -polar_normal(in, nearest - half_chord * in.d, ndc, back);
+    out.back_normal = -polar_normal(in, flat + (middle - half_chord) * in.d, ndc, back);
     return out;
 }
 
-#ifdef COVERAGE
 // How much of the pixel's quarters an ellipsoid of form 0 covers, by the distance of their middles
 // from its outline.
 fn coverage_of(in: EllipsoidVertex) -> vec4<f32> {
-    let offset = pixel_from_texture(in.position) - in.center.xy;
-    let x = offset.x + vec4(-0.25, 0.25, -0.25, 0.25);
-    let y = offset.y + vec4(-0.25, -0.25, 0.25, 0.25);
-    let value = in.outline.x + x * (in.outline.y + in.bend.x * x + in.bend.y * y)
-        + y * (in.outline.z + in.bend.z * y);
-    let slope_x = in.outline.y + 2.0 * in.bend.x * x + in.bend.y * y;
-    let slope_y = in.outline.z + 2.0 * in.bend.z * y + in.bend.y * x;
-    let slope = sqrt(slope_x * slope_x + slope_y * slope_y);
+    let o = pixel_from_texture(in.position) - in.center.xy;
+    let slope = in.outline.yz + 2.0 * in.bend.xz * o + in.bend.yy * o.yx;
+    // A quarter of a pixel from there: left and right, above and below.
+    let across = vec4(-0.25, 0.25, -0.25, 0.25);
+    let down = vec4(-0.25, -0.25, 0.25, 0.25);
+    let within = depth_within(in, o) + across * slope.x + down * slope.y
+        + (0.0625 * (in.bend.x + in.bend.z) + in.bend.y * across * down);
+    let slope_x = slope.x + 2.0 * in.bend.x * across + in.bend.y * down;
+    let slope_y = slope.y + 2.0 * in.bend.z * down + in.bend.y * across;
     // Of a circle of radius R, `from_center` is the distance from its centre over R and the slope is
     // twice that over R.
-    let from_center = sqrt(max(1.0 - value, vec4(1e-6)));
-    let distance = 2.0 * from_center * (1.0 - from_center) / max(slope, vec4(1e-6));
-    // Quarters are half a pixel wide. Of circles smaller than that the ramp adds up to more than
-    // their area, to π(R² + 1/48) in all.
-    let area = PI * inverseSqrt(max(in.bend.x * in.bend.z - 0.25 * in.bend.y * in.bend.y, 1e-12));
-    let part = min(1.083 * area / (area + PI / 48.0), 1.0);
-    return part * clamp(0.5 + 2.0 * distance, vec4(0.0), vec4(1.0));
+    let from_center = sqrt(max(1.0 - within, vec4(1e-6)));
+    let steepness = inverseSqrt(max(slope_x * slope_x + slope_y * slope_y, vec4(1e-12)));
+    let distance = 2.0 * from_center * (1.0 - from_center) * steepness;
+    return in.bend.w * clamp(0.5 + 2.0 * distance, vec4(0.0), vec4(1.0));
 }
-#endif
 
 // Where a ray passes an ellipsoid, in metres from the ray's start.
 struct Chord {

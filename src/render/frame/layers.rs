@@ -2,18 +2,18 @@
 
 use bevy::{
     prelude::*,
-    render::render_resource::{Texture, TextureFormat},
+    render::render_resource::{Texture, TextureFormat, TextureUsages},
 };
 
 use super::{
     Gpu, Target,
     pipelines::TILE,
     support::{FluidSupport, LAYER_FORMAT},
-    targets::ensure,
+    targets::{TARGET, ensure, ensure_for},
 };
 use crate::{
     render::surface::{MARGIN, Surface, Variant},
-    settings::FluidDebugView,
+    settings::{Antialiasing, FluidDebugView},
 };
 
 /// Front and back normals, octahedral, both towards the viewer.
@@ -99,7 +99,8 @@ impl Layers {
     }
 
     /// The liquid's own radiance (reflected, in-scattered and emitted light), and in its alpha the
-    /// transmitted fraction of the background's red light.
+    /// transmitted fraction of the background's red light. Where more than one ray is traced for
+    /// antialiasing, the composite replaces it by the mean light of those rays.
     pub fn radiance(&self) -> Option<&Texture> {
         self.radiance.as_ref().map(|it| &it.texture)
     }
@@ -135,7 +136,7 @@ impl Layers {
     }
 
     /// Along both axes.
-    pub(super) fn tile_count(&self) -> UVec2 {
+    pub(crate) fn tile_count(&self) -> UVec2 {
         (self.size + TILE - 1) / TILE
     }
 
@@ -184,7 +185,19 @@ impl Layers {
         );
         let (wanted, label) = (plan.spray && normals, "fluid_spray_normals");
         keep(&mut self.spray_normals, wanted, label, NORMAL_FORMAT);
-        keep(&mut self.radiance, true, "fluid_radiance", RADIANCE_FORMAT);
+        let usage = match plan.antialiasing {
+            Antialiasing::Full { rays } if rays > 0 => TARGET | TextureUsages::STORAGE_BINDING,
+            _ => TARGET,
+        };
+        let texels = (RADIANCE_FORMAT, usage);
+        ensure_for(
+            &mut self.radiance,
+            true,
+            gpu,
+            "fluid_radiance",
+            size,
+            texels,
+        );
         let label = "fluid_transmission";
         keep(&mut self.transmission, true, label, TRANSMISSION_FORMAT);
         keep(&mut self.exits, true, "fluid_exits", EXIT_FORMAT);

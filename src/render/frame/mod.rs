@@ -133,7 +133,7 @@ fn init_layout(mut commands: Commands, assets: Res<AssetServer>, device: Res<Ren
         layout: BindGroupLayoutDescriptor::new(
             "fluid_frame_layout",
             &BindGroupLayoutEntries::sequential(
-                ShaderStages::VERTEX_FRAGMENT,
+                ShaderStages::VERTEX_FRAGMENT | ShaderStages::COMPUTE,
                 (
                     uniform_buffer::<ViewUniform>(true),
                     uniform_buffer::<GpuFrame>(true),

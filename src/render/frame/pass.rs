@@ -5,8 +5,8 @@ use bevy::{
     render::{
         render_phase::TrackedRenderPass,
         render_resource::{
-            LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-            RenderPassDescriptor, RenderPipeline, StoreOp,
+            ComputePass, LoadOp, Operations, RenderPassColorAttachment,
+            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline, StoreOp,
         },
         renderer::RenderContext,
     },
@@ -92,6 +92,13 @@ impl Frame {
         );
         confine(pass, self.camera_rect);
         self.set(pass, pipeline);
+    }
+
+    /// The surface's own bind group, for a pass that computes.
+    pub(crate) fn bind(&self, pass: &mut ComputePass) {
+        if let Some(group) = self.group.get() {
+            pass.set_bind_group(0, group, &self.offsets);
+        }
     }
 
     fn set<'a>(&'a self, pass: &mut TrackedRenderPass<'a>, pipeline: &'a RenderPipeline) {

@@ -99,7 +99,7 @@ pub(crate) fn one_texture_layout(label: &'static str) -> BindGroupLayoutDescript
 pub(super) const TILE: u32 = 16;
 
 /// The same for shaders.
-pub(super) fn tile_size() -> ShaderDefVal {
+pub(crate) fn tile_size() -> ShaderDefVal {
     ShaderDefVal::Int("TILE".into(), TILE as i32)
 }
 

@@ -65,7 +65,7 @@ pub(crate) struct Inputs<'a> {
 impl<'a> Inputs<'a> {
     /// A texture, or "nothing here" where the surface lacks it.
     pub(crate) fn or_nothing(&self, target: &'a Option<Target>) -> Input<'a> {
-        Input::texture(Some(target.as_ref().unwrap_or(&self.placeholder.0)))
+        self.placeholder.or(target)
     }
 }
 
@@ -181,7 +181,8 @@ fn request<S: Stage>(
                 cache.block_on_render_pipeline(*id);
             }
             if cache.get_render_pipeline(*id).is_none() {
-                surface.waiting = Some(Waiting::new(S::LABEL, *id, &cache));
+                surface.waiting =
+                    Some(Waiting::new(S::LABEL, cache.get_render_pipeline_state(*id)));
             }
         }
     }

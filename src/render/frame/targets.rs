@@ -16,7 +16,7 @@ use bevy::{
     },
 };
 
-use super::{Gpu, pipelines::NO_LAYERS, support::LAYER_FORMAT};
+use super::{Gpu, Input, pipelines::NO_LAYERS, support::LAYER_FORMAT};
 
 /// The memory of all textures that passes of fluids draw to, of all cameras.
 #[derive(Resource, Clone, Debug, Default)]
@@ -51,7 +51,12 @@ pub(crate) struct Target {
 }
 
 impl Target {
-    fn new(gpu: &Gpu, label: &'static str, size: UVec2, format: TextureFormat) -> Self {
+    fn new(
+        gpu: &Gpu,
+        label: &'static str,
+        size: UVec2,
+        (format, usage): (TextureFormat, TextureUsages),
+    ) -> Self {
         let texture = gpu.device.create_texture(&TextureDescriptor {
             label: Some(label),
             size: extent(size),
@@ -59,10 +64,7 @@ impl Target {
             sample_count: 1,
             dimension: TextureDimension::D2,
             format,
-            usage: TextureUsages::RENDER_ATTACHMENT
-                | TextureUsages::TEXTURE_BINDING
-                | TextureUsages::COPY_SRC
-                | TextureUsages::COPY_DST,
+            usage,
             view_formats: &[],
         });
         // Of all formats in use; depth is as large as a float.
@@ -95,21 +97,48 @@ pub(crate) fn ensure(
     size: UVec2,
     format: TextureFormat,
 ) {
+    ensure_for(target, wanted, gpu, label, size, (format, TARGET));
+}
+
+/// The usages of a target.
+pub(super) const TARGET: TextureUsages = TextureUsages::RENDER_ATTACHMENT
+    .union(TextureUsages::TEXTURE_BINDING)
+    .union(TextureUsages::COPY_SRC)
+    .union(TextureUsages::COPY_DST);
+
+/// Keeps a target of a size and for given usages while it is wanted.
+pub(super) fn ensure_for(
+    target: &mut Option<Target>,
+    wanted: bool,
+    gpu: &Gpu,
+    label: &'static str,
+    size: UVec2,
+    texels: (TextureFormat, TextureUsages),
+) {
     if !wanted {
         *target = None;
         return;
     }
-    let fits = |it: &Target| it.texture.size() == extent(size) && it.texture.format() == format;
+    let fits = |Target { texture, .. }: &Target| {
+        texture.size() == extent(size) && (texture.format(), texture.usage()) == texels
+    };
     if !target.as_ref().is_some_and(fits) {
         // The old one is freed before.
         *target = None;
-        *target = Some(Target::new(gpu, label, size, format));
+        *target = Some(Target::new(gpu, label, size, texels));
     }
 }
 
 /// One texel of "nothing here", for textures that a surface lacks.
 #[derive(Resource)]
-pub(crate) struct Placeholder(pub(crate) Target);
+pub(crate) struct Placeholder(Target);
+
+impl Placeholder {
+    /// A texture, or "nothing here" where the surface lacks it.
+    pub(crate) fn or<'a>(&'a self, target: &'a Option<Target>) -> Input<'a> {
+        Input::texture(Some(target.as_ref().unwrap_or(&self.0)))
+    }
+}
 
 pub(super) fn init_placeholder(
     mut commands: Commands,

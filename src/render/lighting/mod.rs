@@ -108,7 +108,7 @@ fn init_layout(mut commands: Commands) {
     commands.insert_resource(LightingLayout(BindGroupLayoutDescriptor::new(
         "fluid_lighting_layout",
         &BindGroupLayoutEntries::sequential(
-            ShaderStages::FRAGMENT,
+            ShaderStages::FRAGMENT | ShaderStages::COMPUTE,
             (
                 uniform_buffer::<GpuLighting>(true),
                 cube(),

@@ -7,18 +7,10 @@
 }
 #import bevy_fluid::render::types::{NO_BACK, NO_FRONT}
 
-struct Tracing {
-    // Search: evenly spaced samples before the bracket.
-    coarse_samples: u32,
-    // How far behind the liquid an opaque surface is wetted, in view units.
-    contact: f32,
-}
-
 @group(1) @binding(0) var bulk_layers: texture_2d<f32>;
 @group(1) @binding(1) var bulk_normals: texture_2d<f32>;
 @group(1) @binding(2) var spray_layers: texture_2d<f32>;
 @group(1) @binding(3) var spray_normals: texture_2d<f32>;
-@group(1) @binding(5) var<uniform> tracing: Tracing;
 
 const BULK: u32 = 0u;
 const SPRAY: u32 = 1u;

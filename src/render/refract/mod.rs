@@ -9,8 +9,7 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupLayoutDescriptor, BindGroupLayoutEntries, PipelineCache,
-            RenderPipelineDescriptor, ShaderStages, ShaderType, SpecializedRenderPipeline,
-            binding_types::uniform_buffer,
+            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -23,8 +22,8 @@ pub use self::{
 };
 use super::{
     frame::{
-        EXIT_FORMAT, Frame, FrameLayout, Group, Inputs, Kept, Layers, RADIANCE_FORMAT, Stage,
-        TRANSMISSION_FORMAT, add_stage, cleared,
+        EXIT_FORMAT, Frame, FrameLayout, Group, Inputs, Kept, Layers, NoUniform, RADIANCE_FORMAT,
+        Stage, TRANSMISSION_FORMAT, add_stage, cleared,
         pipelines::{Tiles, defs, fragment, tile_pipeline, unfiltered},
         timed,
     },
@@ -38,26 +37,6 @@ use crate::settings::{Fresnel, ScreenSpaceFluid, Search};
 
 /// Name of the pass's time span.
 pub(crate) const SPAN: &str = "fluid_refract";
-
-/// `Tracing` in `layers.wgsl`.
-#[derive(Clone, Copy, Default, PartialEq, ShaderType)]
-pub(crate) struct GpuTracing {
-    coarse_samples: u32,
-    contact: f32,
-}
-
-impl GpuTracing {
-    pub(crate) fn of(surface: &Surface) -> Option<Self> {
-        let settings = &surface.drawn.as_ref()?.settings;
-        Some(Self {
-            coarse_samples: match settings.search {
-                Search::Secant => 0,
-                Search::Bracketed { coarse_samples } => coarse_samples,
-            },
-            contact: settings.contact * surface.uniform.radius,
-        })
-    }
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RefractKey {
@@ -116,7 +95,7 @@ pub(crate) fn layer_defs(bulk: bool, spray: bool) -> Vec<ShaderDefVal> {
 pub(super) struct RefractPipeline {
     frame: FrameLayout,
     lighting: BindGroupLayoutDescriptor,
-    /// Layers and normals of bulk and spray, thickness, and the search's parameters.
+    /// Layers and normals of bulk and spray, and thickness.
     layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
@@ -146,7 +125,6 @@ impl FromWorld for RefractPipeline {
                         unfiltered(),
                         unfiltered(),
                         unfiltered(),
-                        uniform_buffer::<GpuTracing>(true),
                     ),
                 ),
             ),
@@ -176,15 +154,11 @@ impl SpecializedRenderPipeline for RefractPipeline {
 
 impl Stage for RefractPipeline {
     const LABEL: &'static str = SPAN;
-    type Uniform = GpuTracing;
+    type Uniform = NoUniform;
     type State = Group;
 
     fn keys(&self, variant: &Variant) -> Vec<RefractKey> {
         vec![RefractKey::new(&variant.plan, &variant.settings)]
-    }
-
-    fn uniform(surface: &Surface) -> Option<GpuTracing> {
-        GpuTracing::of(surface)
     }
 
     fn prepare(&self, group: &mut Group, _: &Surface, layers: &Layers, inputs: &Inputs) {
@@ -194,7 +168,6 @@ impl Stage for RefractPipeline {
             inputs.or_nothing(&layers.spray),
             inputs.or_nothing(&layers.spray_normals),
             inputs.or_nothing(&layers.thickness),
-            inputs.uniform.clone(),
         ];
         group.prepare(inputs.gpu, SPAN, &self.layout, &traced);
     }
@@ -219,7 +192,7 @@ pub(super) fn refract(
             let targets =
                 targets.map(|target| target.as_ref().and_then(|it| cleared(it, [0.0; 4])));
             let mut pass = frame.begin(ctx, SPAN, &targets, None, pipeline);
-            pass.set_bind_group(1, group, &[kept.offset.bytes()]);
+            pass.set_bind_group(1, group, &[]);
             pass.set_bind_group(2, light, &light_offset);
             frame.draw_tiles(&mut pass);
         }

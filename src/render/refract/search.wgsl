@@ -4,7 +4,7 @@
 #import bevy_fluid::render::frame::surface
 #import bevy_fluid::render::functions::{pixel_from_ndc, view_depth}
 #import bevy_fluid::render::refract::layers::{
-    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at, tracing,
+    BACK, FRONT, clamp_to_view, layer_depths, on_screen, scene_depth_at,
 }
 #import bevy_fluid::render::refract::track::{
     Track, device_at, distance_from_s, in_device_depth, s_from_distance, tolerance, track_of, w_at,
@@ -172,7 +172,7 @@ const FARTHEST: f32 = 1e30;
 // Expanding steps until the gap changes sign, then `refine`. `guess` is a distance.
 fn search_bracketed(to: Target, track: Track, start: Gap, guess: f32) -> Found {
     var b = Bracket(0.0, start, 0.0, start);
-    let coarse = i32(tracing.coarse_samples);
+    let coarse = i32(surface.coarse_samples);
     var left = EVALUATIONS + coarse;
     var t = 0.0;
     // As far as twice the guess, evenly.

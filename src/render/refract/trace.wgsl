@@ -10,7 +10,7 @@
 #import bevy_fluid::render::optics::{environment, facing, highlights, meet}
 #import bevy_fluid::render::refract::inside::{accumulated_length, medium_source}
 #import bevy_fluid::render::refract::layers::{
-    BULK, SPRAY, layer_depths, layer_normal, load_layers, on_screen, tracing,
+    BULK, SPRAY, layer_depths, layer_normal, load_layers, on_screen,
 }
 #import bevy_fluid::render::refract::search::{Target, meets_scene, search}
 #import bevy_fluid::render::straight::layered_length
@@ -89,8 +89,8 @@ fn advance(path: ptr<function, Path>, t: f32) {
 }
 
 // How far behind a liquid's surface an opaque one still counts as wetted by it: no air between.
-fn contact(direction: vec3<f32>, n: vec3<f32>) -> f32 {
-    return tracing.contact / max(abs(dot(direction, n)), 0.25);
+fn contact_along(direction: vec3<f32>, n: vec3<f32>) -> f32 {
+    return surface.contact / max(abs(dot(direction, n)), 0.25);
 }
 
 // Searches for an opaque surface up to `t`; if one is met, the path ends there.
@@ -155,7 +155,7 @@ fn trace(path: ptr<function, Path>) {
         }
         let hit = (*path).position + found.t * (*path).direction;
         let n = layer_normal((*path).kind, found.side, pixel_of(hit));
-        let wetted = select(0.0, contact((*path).direction, n), leaving);
+        let wetted = select(0.0, contact_along((*path).direction, n), leaving);
         if stops(path, found.t + wetted, leaving) {
             return;
         }

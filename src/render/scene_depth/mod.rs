@@ -91,7 +91,10 @@ fn wait_for_pipeline(
     }
     for mut surface in &mut surfaces {
         if surface.wanted.samples > 1 && surface.wanted.scene_depth {
-            surface.waiting = Some(Waiting::new(SPAN, pipeline.id, &cache));
+            surface.waiting = Some(Waiting::new(
+                SPAN,
+                cache.get_render_pipeline_state(pipeline.id),
+            ));
         }
     }
 }

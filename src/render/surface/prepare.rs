@@ -175,7 +175,13 @@ pub(super) fn prepare_surfaces(
             let (Some(plan), Some(rect)) = (plan(&input), rect) else {
                 continue;
             };
-            let mut uniform = GpuSurface::new(&material, radius, eye.view_scale, camera.exposure);
+            let mut uniform = GpuSurface::new(
+                &material,
+                &fluid_view.settings,
+                radius,
+                eye.view_scale,
+                camera.exposure,
+            );
             if let Some(center) = behind.replace(bounds.center()) {
                 let center = eye.view_from_eye.transform_point3(center);
                 uniform.behind = center.extend(1.0);

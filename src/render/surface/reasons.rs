@@ -8,10 +8,7 @@ use std::sync::{
 use bevy::{
     ecs::system::SystemParam,
     prelude::*,
-    render::{
-        render_resource::{CachedPipelineState, CachedRenderPipelineId, PipelineCache},
-        sync_world::MainEntity,
-    },
+    render::{render_resource::CachedPipelineState, sync_world::MainEntity},
     shader::ShaderCacheError,
 };
 
@@ -123,12 +120,8 @@ pub struct Waiting {
 }
 
 impl Waiting {
-    pub(crate) fn new(
-        stage: &'static str,
-        pipeline: CachedRenderPipelineId,
-        cache: &PipelineCache,
-    ) -> Self {
-        let failed = match cache.get_render_pipeline_state(pipeline) {
+    pub(crate) fn new(stage: &'static str, pipeline: &CachedPipelineState) -> Self {
+        let failed = match pipeline {
             // The shader may still be loaded.
             CachedPipelineState::Err(error) => !matches!(
                 error,

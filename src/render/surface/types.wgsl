@@ -32,6 +32,10 @@ struct GpuSurface {
     behind: vec4<f32>,
     // Accumulated thickness: density (1 − q²)^softness within a splat.
     softness: f32,
+    // Search: evenly spaced samples before the bracket.
+    coarse_samples: u32,
+    // How far behind the liquid an opaque surface is wetted.
+    contact: f32,
 }
 
 // Depth layers hold (device depth of the front, −device depth of the back), so that one `max` blend

@@ -2,7 +2,10 @@
 
 use bevy::{prelude::*, render::render_resource::ShaderType};
 
-use crate::material::{FluidMaterial, Thickness};
+use crate::{
+    material::{FluidMaterial, Thickness},
+    settings::{ScreenSpaceFluid, Search},
+};
 
 /// Transform and particle radius of a fluid.
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
@@ -22,6 +25,8 @@ pub(crate) struct GpuSurface {
     pub(crate) radius: f32,
     pub(crate) behind: Vec4,
     pub(crate) softness: f32,
+    pub(crate) coarse_samples: u32,
+    pub(crate) contact: f32,
 }
 
 impl GpuSurface {
@@ -29,23 +34,30 @@ impl GpuSurface {
     /// times the world's.
     pub(crate) fn new(
         material: &FluidMaterial,
+        settings: &ScreenSpaceFluid,
         radius: f32,
         view_scale: f32,
         exposure: f32,
     ) -> Self {
         let medium = &material.medium;
+        let radius = radius * view_scale;
         Self {
             extinction: medium.extinction() / view_scale,
             refractive_index: material.refractive_index,
             scattering: medium.scattered() / view_scale,
             perceptual_roughness: material.perceptual_roughness,
             emission: medium.emission.to_vec3() * exposure / view_scale,
-            radius: radius * view_scale,
+            radius,
             behind: Vec4::ZERO,
             softness: match material.thickness {
                 Thickness::Layers => 0.0,
                 Thickness::Accumulated { softness } => softness,
             },
+            coarse_samples: match settings.search {
+                Search::Secant => 0,
+                Search::Bracketed { coarse_samples } => coarse_samples,
+            },
+            contact: settings.contact * radius,
         }
     }
 }
