@@ -10,11 +10,11 @@ use super::{SettingRange, Window};
 pub struct PlaneFit {
     /// Form of the fit. Default: separable.
     pub form: PlaneFitForm,
-    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 5. More:
+    /// Taps to each side of the centre; the window is `2n + 1` wide. Range 1..=8, default 4. More:
     /// smoother between taps, at a linear (separable) or quadratic cost.
     #[reflect(@SettingRange::new(1.0, 8.0).unit("taps"))]
     pub half_taps: u32,
-    /// How often the fit is repeated. Range 1..=8, default 1. More: smoother.
+    /// How often the fit is repeated. Range 1..=8, default 2. More: smoother.
     #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 1.7 radii. Larger: smoother, less detail.
@@ -35,8 +35,8 @@ impl PlaneFit {
     /// Rows, then columns, in device depth.
     pub const DEFAULT: Self = Self {
         form: PlaneFitForm::Separable,
-        half_taps: 5,
-        iterations: 1,
+        half_taps: 4,
+        iterations: 2,
         window: Window::Radii(1.7),
         range: 2.0,
         bound: 2.0,

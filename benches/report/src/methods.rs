@@ -272,6 +272,8 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
         },
         antialiased("none", Antialiasing::None),
         antialiased("edges", Antialiasing::Edges),
+        antialiased("2 rays", Antialiasing::Full { rays: 2 }),
+        antialiased("4 rays", Antialiasing::Full { rays: 4 }),
         Method::new("refractions", "0", with(Refractions::Zero)),
         Method::new("refractions", "1", with(Refractions::One)),
         Method::new("refractions", "2", with(Refractions::Two)),

@@ -32,10 +32,14 @@ use crate::settings::Smoothing;
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
 pub(crate) struct GpuSmoothing {
     window_radii: f32,
+    min_half_width: f32,
     range: f32,
     bound: f32,
     flow_step: f32,
 }
+
+/// Half of the smallest window of all repetitions together. Unit: pixels.
+const MIN_HALF_WIDTH: f32 = 4.0;
 
 impl GpuSmoothing {
     /// For particles of `radius` in view units.
@@ -46,8 +50,14 @@ impl GpuSmoothing {
             #[cfg(feature = "published")]
             _ => super::published::parameters(smoothing),
         };
+        // Variances of windows add up.
+        let repeated = match *smoothing {
+            Smoothing::PlaneFit(fit) => fit.iterations as f32,
+            _ => 1.0,
+        };
         Self {
             window_radii,
+            min_half_width: MIN_HALF_WIDTH / repeated.sqrt(),
             range: range * radius,
             bound: bound * radius,
             flow_step,

@@ -4,7 +4,7 @@
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
 #import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{
-    Window, accept, edge_weight, slant, tap_at, widen, window_at,
+    Window, accept, edge_weight, slant, smoothing, tap_at, widen, window_at,
 }
 
 struct Output {
@@ -102,7 +102,90 @@ fn output(layers: vec4<f32>) -> vec4<f32> {
 }
 #endif
 
-// Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it.
+// Weighted sums over taps to one side of the centre, of fronts and backs. Depths are relative to the
+// centre's, as device depths differ in their last digits only, in units of the range.
+struct Sums {
+    count: vec2<f32>,
+    weight: vec2<f32>,
+    x: vec2<f32>,
+    xx: vec2<f32>,
+    d: vec2<f32>,
+    xd: vec2<f32>,
+    dd: vec2<f32>,
+    // Of slopes along x.
+    across: vec2<f32>,
+}
+
+fn add(sums: ptr<function, Sums>, x: f32, d: vec2<f32>, across: vec2<f32>, w: vec2<f32>) {
+    (*sums).count += vec2<f32>(w > vec2(0.0));
+    (*sums).weight += w;
+    (*sums).x += w * x;
+    (*sums).xx += w * x * x;
+    (*sums).d += w * d;
+    (*sums).xd += w * x * d;
+    (*sums).dd += w * d * d;
+    (*sums).across += w * across;
+}
+
+fn both(a: Sums, b: Sums) -> Sums {
+    return Sums(
+        a.count + b.count, a.weight + b.weight, a.x + b.x, a.xx + b.xx, a.d + b.d, a.xd + b.xd,
+        a.dd + b.dd, a.across + b.across,
+    );
+}
+
+// The taps to one side.
+fn to_side(window: Window, axis: vec2<i32>, side: i32) -> Sums {
+    var sums: Sums;
+    for (var t = 1; t <= #{HALF_TAPS}; t += 1) {
+        let tap = tap_at(window, side * t * axis, edge_weight(window, t));
+        let apart = (tap.value.xy - window.center.xy) * window.steepness;
+        add(&sums, f32(side * t), apart, tap.value.zw, tap.weight);
+    }
+    return sums;
+}
+
+struct Fit {
+    // At the centre, relative to it, and per tap.
+    depth: vec2<f32>,
+    slope: vec2<f32>,
+    across: vec2<f32>,
+    // Two taps do not smooth, but they do have a slope.
+    sloped: vec2<bool>,
+    good: vec2<bool>,
+    // Squared mean distance of the taps from it.
+    error: vec2<f32>,
+}
+
+fn fit(sums: Sums) -> Fit {
+    let total = max(sums.weight, vec2(1e-20));
+    let mx = sums.x / total;
+    let md = sums.d / total;
+    let cxx = sums.xx / total - mx * mx;
+    let cxd = sums.xd / total - mx * md;
+    let sloped = cxx > vec2(1e-4);
+    let slope = select(vec2(0.0), cxd / select(vec2(1.0), cxx, sloped), sloped);
+    return Fit(
+        md - slope * mx, slope, sums.across / total, sloped, sloped & (sums.count >= vec2(3.0)),
+        max(sums.dd / total - md * md - slope * cxd, vec2(0.0)),
+    );
+}
+
+// How well the taps lie on a line: 1 to 0.
+fn straight(fit: Fit, bend: f32) -> vec2<f32> {
+    let part = 1.0 / (1.0 + fit.error / (bend * bend));
+    return part * part * part * part;
+}
+
+// Mean distance of the taps from a line, over half the window's width, from which on there is a
+// crease; and how much more the fit to the whole window counts than one to a side if both are as
+// good. By measurement: below, bumps and curves are taken for creases, and half a window is noisier.
+const CREASE: f32 = 0.1;
+const WHOLE: f32 = 100.0;
+
+// Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it. Where the whole
+// window does not lie on a line but one half of it does, that half counts: a crease keeps its edge
+// (weights as in essentially non-oscillatory schemes, Jiang & Shu 1996).
 @fragment
 fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     var window = window_at(position);
@@ -114,46 +197,32 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     let axis = select(vec2(1, 0), vec2(0, 1), #{LINE} == 1);
     widen(&window, slant(window, axis));
     // The centre has been read already.
-    var count = vec2<f32>(window.valid);
-    var s = count;
-    var sx = vec2(0.0);
-    var sxx = vec2(0.0);
-    var sd = vec2(0.0);
-    var sxd = vec2(0.0);
-    var across = s * window.center.zw;
-    for (var t = -#{HALF_TAPS}; t < #{HALF_TAPS}; t += 1) {
-        let i = select(t, t + 1, t >= 0);
-        let tap = tap_at(window, i * axis, edge_weight(window, i));
-        let w = tap.weight;
-        let wd = w * (tap.value.xy - window.center.xy);
-        let x = f32(i);
-        count += vec2<f32>(w > vec2(0.0));
-        s += w;
-        sx += w * x;
-        sxx += w * x * x;
-        sd += wd;
-        sxd += wd * x;
-        across += w * tap.value.zw;
-    }
-    let total = max(s, vec2(1e-20));
-    let mx = sx / total;
-    let md = sd / total;
-    let cxx = sxx / total - mx * mx;
-    let cxd = sxd / total - mx * md;
-    // Two taps do not smooth, but they do have a slope.
-    let sloped = cxx > vec2(1e-4);
-    let slope = select(vec2(0.0), cxd / select(vec2(1.0), cxx, sloped), sloped);
-    let good = sloped & (count >= vec2(3.0));
-    let layers = accept(window, window.center.xy + md - slope * mx, good);
-    var per_pixel = slope / f32(window.spacing);
-    if any(window.valid & !sloped) {
+    var center: Sums;
+    add(&center, 0.0, vec2(0.0), window.center.zw, vec2<f32>(window.valid));
+    let left = both(center, to_side(window, axis, -1));
+    let right = to_side(window, axis, 1);
+    let before = fit(left);
+    let after = fit(both(center, right));
+    let whole = fit(both(left, right));
+    let bend = CREASE * window.half_width / smoothing.range;
+    let w0 = select(vec2(0.0), straight(before, bend), before.good);
+    let w1 = select(vec2(0.0), straight(after, bend), after.good);
+    let w = WHOLE * straight(whole, bend);
+    let scale = 1.0 / max(w0 + w1 + w, vec2(1e-30));
+    let depth = scale * (w0 * before.depth + w1 * after.depth + w * whole.depth);
+    let slope = scale * (w0 * before.slope + w1 * after.slope + w * whole.slope);
+    let across = scale * (w0 * before.across + w1 * after.across + w * whole.across);
+    let to_device = 1.0 / window.steepness;
+    let layers = accept(window, window.center.xy + depth * to_device, whole.good);
+    var per_pixel = slope * to_device / f32(window.spacing);
+    if any(window.valid & !whole.sloped) {
         // So steep that all taps are out of range: the slope to the next pixel is used instead.
         let beside = one_sided_slope(window.pixel, window.center.xy, axis);
-        per_pixel = select(beside, per_pixel, sloped);
+        per_pixel = select(beside, per_pixel, whole.sloped);
     }
 #ifdef NORMALS
     out.layers = vec4(layers, 0.0, 0.0);
-    out.normals = encode_normals(window, layers, across / total, per_pixel);
+    out.normals = encode_normals(window, layers, across, per_pixel);
 #else
     out.layers = output(vec4(layers, per_pixel));
 #endif

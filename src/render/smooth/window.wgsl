@@ -12,6 +12,9 @@
 struct Smoothing {
     // Half window in particle radii; 0: in pixels, one per tap.
     window_radii: f32,
+    // Half of the smallest window, in pixels: where particles are smaller than pixels, neighbouring
+    // pixels show different particles, which is noise and not the surface's shape.
+    min_half_width: f32,
     // Depth difference of weight exp(-1).
     range: f32,
     // Largest shift in depth.
@@ -24,9 +27,6 @@ struct Smoothing {
 
 // Pixels between taps at the most: beyond it the window stops growing.
 const MAX_SPACING: i32 = 16;
-// Half of the smallest window, in pixels: where particles are smaller than pixels, neighbouring
-// pixels show different particles, which is noise and not the surface's shape.
-const MIN_HALF_WIDTH: f32 = min(3.0, f32(#{HALF_TAPS}));
 
 // By how much the range is widened at the most: strands behind strands may rise like a slope.
 const MAX_SLACK: f32 = 8.0;
@@ -44,6 +44,8 @@ struct Window {
     spacing: i32,
     // Half width in taps, fractional.
     half_taps: f32,
+    // The same in metres.
+    half_width: f32,
     // By how much the range and the bound are wider: see `widen`.
     slack: vec2<f32>,
 }
@@ -76,11 +78,12 @@ fn window_at(position: vec4<f32>) -> Window {
     let d = select(-out.center.y, out.center.x, out.valid.x);
     let scale = pixels_per_metre(view_from_device(out.ndc, d));
     let half_taps = f32(#{HALF_TAPS});
-    let half_width = max(smoothing.window_radii * surface.radius * scale, MIN_HALF_WIDTH);
+    let half_width = max(smoothing.window_radii * surface.radius * scale, min(smoothing.min_half_width, half_taps));
     let spacing = clamp(i32(ceil(half_width / half_taps)), 1, MAX_SPACING);
     let in_radii = smoothing.window_radii > 0.0;
     out.spacing = select(1, spacing, in_radii);
     out.half_taps = select(half_taps, min(half_width / f32(spacing), half_taps), in_radii);
+    out.half_width = out.half_taps * f32(out.spacing) / scale;
     out.slack = vec2(1.0);
     return out;
 }
@@ -110,11 +113,12 @@ fn widen(window: ptr<function, Window>, slant: vec2<f32>) {
     (*window).steepness /= slack;
 }
 
-// How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
-// window grows by a pixel.
+// The weight of a tap by its distance: it fades towards the window's border, or particles that enter
+// the window from pixel to pixel and frame to frame would shake the slope, whose taps count by their
+// distance.
 fn edge_weight(window: Window, tap: i32) -> f32 {
-    let faded = clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
-    return select(1.0, faded, smoothing.window_radii > 0.0);
+    let q = f32(tap) / (window.half_taps + 0.5);
+    return select(1.0, max(1.0 - q * q, 0.0), smoothing.window_radii > 0.0);
 }
 
 // A tap's values.
