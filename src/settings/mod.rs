@@ -137,9 +137,8 @@ impl Smoothing {
     pub(crate) fn layer_passes(&self) -> u32 {
         match self {
             Self::None => 0,
-            Self::PlaneFit(fit) if fit.form == PlaneFitForm::Separable => {
-                2 * fit.iterations.saturating_sub(1)
-            }
+            // What is between rows and columns is kept elsewhere.
+            Self::PlaneFit(fit) if fit.form == PlaneFitForm::Separable => 0,
             Self::PlaneFit(fit) => fit.iterations,
             #[cfg(feature = "published")]
             Self::NormalAverage(_) => 0,

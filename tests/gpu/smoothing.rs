@@ -3,7 +3,7 @@
 use crate::common::*;
 use bevy::{math::DVec3, prelude::*};
 use bevy_fluid::{
-    prelude::ScreenSpaceFluid,
+    prelude::{ScreenSpaceFluid, SurfaceKernel},
     render::Layers,
     settings::{Bilateral, PlaneFit, PlaneFitForm, Smoothing},
 };
@@ -243,6 +243,43 @@ fn bumps_are_smoothed_away() {
             );
         }
     }
+}
+
+/// Errors of the normals of a block of liquid, by the face that they lie on. Unit: degrees.
+fn errors_on_faces(view: &View, app: &App, rotation: Quat) -> Vec<f64> {
+    let to_block = rotation.inverse().as_dquat();
+    let mut errors: Vec<_> = surface(view, app, 0)
+        .into_iter()
+        .map(|(_, point, normal)| {
+            let point = to_block * (point - DVec3::NEG_Z * 5.0);
+            let face = point.abs().max_position();
+            let axis = DVec3::AXES[face] * point[face].signum();
+            angle(to_block * normal, axis)
+        })
+        .collect();
+    assert!(errors.len() > 2000);
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
+/// A block seen over its corner: three faces, three edges, and a silhouette around them.
+#[test]
+fn windows_do_not_reach_around_an_edge() {
+    let view = View::new(128, PARALLEL.lens);
+    let rotation = Quat::from_euler(EulerRot::XYZ, 0.5, 0.7, 0.0);
+    let radius = 0.025;
+    let places = lattice(12, 2.0 * radius, 0.05).into_iter();
+    let middle = Vec3::splat(11.0 * radius);
+    let block: Vec<_> = places
+        .map(|place| Vec3::NEG_Z * 5.0 + rotation * (place - middle))
+        .collect();
+    let app = show(&view, fitted(PlaneFitForm::Separable), |world| {
+        world.spawn(fluid(&block, radius, SurfaceKernel::default()));
+    });
+    let errors = errors_on_faces(&view, &app, rotation);
+    let [median, most] = [0.5, 0.9].map(|part| errors[(part * errors.len() as f64) as usize]);
+    println!("{median}° {most}°");
+    assert!(median < 1.5 && most < 10.0, "{median}° {most}°");
 }
 
 /// The peers smooth too, each in its way: narrow range and curvature flow the depth and with it

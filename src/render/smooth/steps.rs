@@ -81,9 +81,10 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
         .map(|i| {
             let kernel = kernels[i % kernels.len()];
             let last = i + 1 == total;
-            // The last fit passes its slopes to the normals.
+            // Rows pass on their slopes: to the last columns for the normals, to others as a texture that
+            // is there anyway.
             let from = match to {
-                Buffer::Layers if last && kernel == SmoothKernel::Columns => Buffer::Slopes,
+                Buffer::Layers if kernel == SmoothKernel::Columns => Buffer::Slopes,
                 Buffer::Slopes | Buffer::Scratch => Buffer::Layers,
                 Buffer::Layers => Buffer::Scratch,
             };
@@ -134,7 +135,12 @@ mod tests {
             assert_eq!(steps.len(), count);
             assert!(steps[count - 1].normals);
             let slopes = steps.iter().filter(|step| step.to == Buffer::Slopes);
-            assert_eq!(slopes.count(), usize::from(form == PlaneFitForm::Separable));
+            let rows = if form == PlaneFitForm::Separable {
+                3
+            } else {
+                0
+            };
+            assert_eq!(slopes.count(), rows);
             check(&smoothing, &steps);
         }
         assert!(steps(&Smoothing::None).is_empty());
