@@ -42,7 +42,7 @@ macro_rules! assert_code {
 fn only_what_differs_is_listed() {
     let camera = ScreenSpaceFluid {
         smoothing: Smoothing::PlaneFit(PlaneFit {
-            iterations: 2,
+            iterations: 3,
             window: Window::Radii(1.0),
             ..PlaneFit::DEFAULT
         }),
@@ -53,7 +53,7 @@ fn only_what_differs_is_listed() {
     let code = "\
 ScreenSpaceFluid {
     smoothing: Smoothing::PlaneFit(PlaneFit {
-        iterations: 2,
+        iterations: 3,
         window: Window::Radii(1.0),
         ..default()
     }),
@@ -80,7 +80,6 @@ fn the_code_of_every_kind_of_camera_compiles() {
         ScreenSpaceFluid {
             smoothing: Smoothing::PlaneFit(PlaneFit {
                 form: PlaneFitForm::TotalLeastSquares,
-                half_taps: 4,
                 iterations: 3,
                 window: Window::Pixels,
                 ..default()
