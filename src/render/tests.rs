@@ -5,8 +5,8 @@ use bevy::{
     render::{
         RenderApp,
         render_resource::{
-            CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipeline,
-            TextureFormat,
+            CachedPipelineState, PipelineCache, SpecializedComputePipeline,
+            SpecializedRenderPipeline, TextureFormat,
         },
     },
     shader::ShaderDefVal,
@@ -14,7 +14,10 @@ use bevy::{
 use fluid_stage::{headless_app, settle};
 
 use super::{
-    composite::{CompositeKey, CompositePart, CompositePipeline, ShadeKey, ShadePipeline},
+    composite::{
+        CompositeKey, CompositePart, CompositePipeline, RaysKey, RaysPipeline, ShadeKey,
+        ShadePipeline,
+    },
     debug_view::{DebugKey, DebugPipeline},
     frame::Stage,
     motion::{MotionKey, MotionPipeline},
@@ -46,7 +49,10 @@ fn pairs<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
 }
 
 /// Requests pipelines in an app's render world and asserts that all of them are made.
-fn assert_made(ask: impl FnOnce(&World) -> Vec<CachedRenderPipelineId>) {
+fn assert_made<Id>(
+    ask: impl FnOnce(&World) -> Vec<Id>,
+    state: impl Fn(&PipelineCache, Id) -> &CachedPipelineState,
+) {
     let mut app = headless_app(UVec2::splat(16), |app| {
         app.add_plugins(FluidPlugin::default());
     })
@@ -59,18 +65,19 @@ fn assert_made(ask: impl FnOnce(&World) -> Vec<CachedRenderPipelineId>) {
     let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
     assert!(!ids.is_empty());
     for id in ids {
-        let state = cache.get_render_pipeline_state(id);
+        let state = state(cache, id);
         assert!(matches!(state, CachedPipelineState::Ok(_)), "{state:?}");
     }
 }
 
 fn assert_variants<P: SpecializedRenderPipeline + Resource>(keys: Vec<P::Key>) {
-    assert_made(|world| {
+    let ask = |world: &World| {
         let (pipeline, cache) = (world.resource::<P>(), world.resource::<PipelineCache>());
         keys.into_iter()
             .map(|key| cache.queue_render_pipeline(pipeline.specialize(key)))
             .collect()
-    });
+    };
+    assert_made(ask, PipelineCache::get_render_pipeline_state);
 }
 
 #[test]
@@ -267,18 +274,19 @@ fn every_composite_is_made() {
         CompositePart::Depth,
         CompositePart::DenseDepth,
     ];
+    let resolved = [None, Some(0), Some(4)];
     let keys = pairs(&pairs(&parts, &formats), &pairs(&[1, 4], &BOTH));
-    let keys = keys
-        .into_iter()
-        .map(|((part, format), (samples, covers))| CompositeKey {
+    let keys = pairs(&keys, &resolved).into_iter().map(
+        |(((part, format), (samples, covers)), resolve)| CompositeKey {
             format,
             samples,
             part,
             covers,
             bulk: covers,
             spray: true,
-            resolve: None,
-        });
+            resolve,
+        },
+    );
     assert_variants::<CompositePipeline>(keys.collect());
 }
 
@@ -292,6 +300,40 @@ fn every_shading_is_made() {
         several,
     });
     assert_variants::<ShadePipeline>(keys.collect());
+}
+
+#[test]
+fn every_ray_is_made() {
+    let classes = [(true, false), (false, true), (true, true)];
+    let keys = pairs(&pairs(&[0, 1, 4], &classes), &BOTH);
+    let keys = keys
+        .into_iter()
+        .map(|((interfaces, (bulk, spray)), all)| RaysKey {
+            count: 2 + interfaces,
+            refract: RefractKey {
+                interfaces,
+                bulk,
+                spray,
+                terms: MediumTerms {
+                    extinction: all,
+                    scattering: all,
+                    emission: all,
+                },
+                ..TRACED
+            },
+            background: ShadeKey {
+                fog: all,
+                atmosphere: all,
+                several: all,
+            },
+        });
+    let ask = |world: &World| {
+        let pipeline = world.resource::<RaysPipeline>();
+        let cache = world.resource::<PipelineCache>();
+        let made = keys.map(|key| cache.queue_compute_pipeline(pipeline.specialize(key)));
+        made.collect()
+    };
+    assert_made(ask, PipelineCache::get_compute_pipeline_state);
 }
 
 #[test]

@@ -163,8 +163,8 @@ impl Default for Smoothing {
 #[reflect(Clone, PartialEq)]
 pub enum Window {
     /// A number of particle radii as they appear on screen, at any distance: taps are spread out
-    /// for near particles and dropped for far ones, down to three pixels to each side, which smooth
-    /// what is smaller than pixels. Range 0.05..=4.
+    /// for near particles and dropped for far ones, down to three pixels to each side (plane fits: four
+    /// over the square root of their number), which smooth what is smaller than pixels. Range 0.05..=4.
     Radii(#[reflect(@SettingRange::new(0.05, 4.0).unit("radii").logarithmic())] f32),
     /// One pixel per tap, as in the papers.
     Pixels,

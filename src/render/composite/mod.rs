@@ -35,6 +35,7 @@ pub(super) use self::{pipeline::CompositePipeline, shade::ShadePipeline};
 #[cfg(all(test, feature = "published"))]
 pub(super) use self::{
     pipeline::{CompositeKey, CompositePart},
+    rays::{RaysKey, RaysPipeline},
     shade::ShadeKey,
 };
 use super::{

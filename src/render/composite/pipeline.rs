@@ -110,6 +110,7 @@ impl SpecializedRenderPipeline for CompositePipeline {
             shader_defs.push(ShaderDefVal::UInt("RAYS".into(), rays));
         }
         let formats: &[_] = if key.part.light() { &[key.format] } else { &[] };
+        // The scene's colour is group 3 for all that reads it; light is read by those before.
         let layouts = [&self.layout, &self.lighting, &self.scene].map(Clone::clone);
         RenderPipelineDescriptor {
             // Transparent objects and later passes are depth-tested against the liquid.

@@ -36,13 +36,14 @@ const LABEL: &str = "fluid_rays";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct RaysKey {
     /// Through each of those pixels, besides the first.
-    count: u32,
-    refract: RefractKey,
-    background: ShadeKey,
+    pub(crate) count: u32,
+    pub(crate) refract: RefractKey,
+    pub(crate) background: ShadeKey,
 }
 
 impl RaysKey {
-    /// `None` without rays.
+    /// `None` without rays. Accumulated media have none, whose thickness would be in the place of the
+    /// light.
     pub(crate) fn of(variant: &Variant) -> Option<Self> {
         match variant.plan.antialiasing {
             Antialiasing::Full { rays: count } if count > 0 => Some(Self {
@@ -146,10 +147,11 @@ fn request(
     cache: Res<PipelineCache>,
 ) {
     for mut surface in &mut surfaces {
-        let mut request = |key| specialized.specialize(&cache, &stage, key);
-        if let Some(wanted) = RaysKey::of(&surface.wanted).map(&mut request)
-            && cache.get_compute_pipeline(wanted).is_none()
-        {
+        let Some(wanted) = RaysKey::of(&surface.wanted) else {
+            continue;
+        };
+        let wanted = specialized.specialize(&cache, &stage, wanted);
+        if cache.get_compute_pipeline(wanted).is_none() {
             let state = cache.get_compute_pipeline_state(wanted);
             surface.waiting = Some(Waiting::new(LABEL, state));
         }
@@ -177,6 +179,9 @@ fn prepare(
             ];
             let [_, own, ..] = &stage.layouts;
             rays.group.prepare(&gpu, LABEL, own, &inputs);
+        } else {
+            // It would keep textures alive.
+            rays.group = default();
         }
     }
 }

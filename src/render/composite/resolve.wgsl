@@ -2,7 +2,7 @@
 // through it.
 #define_import_path bevy_fluid::render::resolve
 
-#import bevy_fluid::render::frame::surface
+#import bevy_fluid::render::frame::{frame, surface}
 #import bevy_fluid::render::functions::{depth_map, depth_slope, ndc_from_pixel}
 #import bevy_fluid::render::lit::{is_lit, light_of, tent}
 #import bevy_fluid::render::refract::layers::{BULK, SPRAY, load_layers}
@@ -33,12 +33,17 @@ fn front_of(pixel: vec2<i32>) -> Front {
     return Front(select(SPRAY, BULK, bulk >= spray), max(bulk, spray));
 }
 
+// The pixel beside another; at the view's border, the pixel itself.
+fn beside(pixel: vec2<i32>, offset: vec2<i32>) -> vec2<i32> {
+    return clamp(pixel + offset, vec2(0), vec2<i32>(frame.view_size) - 1);
+}
+
 // How far a pixel's light differs from that of the four pixels beside it, 0 to 1; always at an edge.
 fn parting(pixel: vec2<i32>, own: vec4<f32>) -> f32 {
     var contrast = 0.0;
     for (var k = 0; k < 4; k += 1) {
         let along = select(vec2(1, 0), vec2(0, 1), k >= 2);
-        let found = light_of(pixel + select(along, -along, k % 2 == 1));
+        let found = light_of(beside(pixel, select(along, -along, k % 2 == 1)));
         let apart = abs(perceived(found) - perceived(own));
         contrast += select(0.25, 0.25 * max(apart.r, max(apart.g, apart.b)), is_lit(found));
     }
@@ -51,19 +56,19 @@ fn resolved(pixel: vec2<i32>, own: vec4<f32>, rays: vec4<f32>) -> vec4<f32> {
     // A particle apart in device depth, to first order.
     let map = depth_map(ndc_from_pixel(vec2<f32>(pixel) + 0.5));
     let same_depth = 2.0 * surface.radius / abs(depth_slope(map, vec2(front.depth)).x);
-    // The neighbours' mean, and the part of them that sees other surfaces or none.
+    // The neighbours' mean, and twice the part of the four nearest that see other surfaces or none.
     var sum = vec4(0.0);
     var total = 0.0;
     var others = 0.0;
     for (var j = -1; j <= 1; j += 1) {
         for (var i = -1; i <= 1; i += 1) {
-            let beside = pixel + vec2(i, j);
-            let found = light_of(beside);
+            let neighbor = beside(pixel, vec2(i, j));
+            let found = light_of(neighbor);
             let weight = tent(vec2(i, j), found);
             sum += weight * found;
             total += weight;
             if abs(i) + abs(j) == 1 {
-                let its = front_of(beside);
+                let its = front_of(neighbor);
                 let is_near = abs(its.depth - front.depth) <= same_depth;
                 let is_same = is_lit(found) && its.kind == front.kind && is_near;
                 others += select(0.5, 0.0, is_same);

@@ -33,7 +33,7 @@ struct EllipsoidVertex {
     // device depth half way through the ellipsoid chord.x + chord.yz · o from the centre's; chord.w is
     // half the depth that a line through the centre spends inside.
     @location(5) @interpolate(flat) outline: vec3<f32>,
-    // w: see `coverage_of`.
+    // w: by how much a ramp at the outline adds up to too large an area, see `place`.
     @location(6) @interpolate(flat) bend: vec4<f32>,
     @location(7) @interpolate(flat) chord: vec4<f32>,
 #ifdef MOTION
@@ -240,7 +240,7 @@ fn polar_normal(in: EllipsoidVertex, a: vec4<f32>, ndc: vec2<f32>, depth: f32) -
 }
 
 // 1 − (distance / radius)² from the centre: negative where a line of sight misses.
-fn depth_within(in: EllipsoidVertex, o: vec2<f32>) -> f32 {
+fn within_outline(in: EllipsoidVertex, o: vec2<f32>) -> f32 {
     return in.outline.x + o.x * (in.outline.y + in.bend.x * o.x + in.bend.y * o.y)
         + o.y * (in.outline.z + in.bend.z * o.y);
 }
@@ -250,7 +250,7 @@ fn intersect_quadric(in: EllipsoidVertex) -> Intersection {
     var out: Intersection;
     let pixel = pixel_from_texture(in.position);
     var offset = pixel - in.center.xy;
-    var within = depth_within(in, offset);
+    var within = within_outline(in, offset);
     if within < 0.0 && all(floor(pixel) == floor(in.center.xy)) {
         // Too small for this pixel's centre: the splat is intersected at its own centre, or moving
         // droplets would flicker as they pass the centres of pixels.
@@ -281,7 +281,7 @@ fn coverage_of(in: EllipsoidVertex) -> vec4<f32> {
     // A quarter of a pixel from there: left and right, above and below.
     let across = vec4(-0.25, 0.25, -0.25, 0.25);
     let down = vec4(-0.25, -0.25, 0.25, 0.25);
-    let within = depth_within(in, o) + across * slope.x + down * slope.y
+    let within = within_outline(in, o) + across * slope.x + down * slope.y
         + (0.0625 * (in.bend.x + in.bend.z) + in.bend.y * across * down);
     let slope_x = slope.x + 2.0 * in.bend.x * across + in.bend.y * down;
     let slope_y = slope.y + 2.0 * in.bend.z * down + in.bend.y * across;

@@ -38,8 +38,10 @@ pub(crate) struct GpuSmoothing {
     flow_step: f32,
 }
 
-/// Half of the smallest window of all repetitions together. Unit: pixels.
-const MIN_HALF_WIDTH: f32 = 4.0;
+/// Half of the smallest window. Unit: pixels.
+const MIN_HALF_WIDTH: f32 = 3.0;
+/// The same of repeated plane fits together, whose taps fade towards the border.
+const MIN_FADING: f32 = 4.0;
 
 impl GpuSmoothing {
     /// For particles of `radius` in view units.
@@ -50,14 +52,14 @@ impl GpuSmoothing {
             #[cfg(feature = "published")]
             _ => super::published::parameters(smoothing),
         };
-        // Variances of windows add up.
-        let repeated = match *smoothing {
-            Smoothing::PlaneFit(fit) => fit.iterations as f32,
-            _ => 1.0,
+        let min_half_width = match *smoothing {
+            // Variances of windows add up.
+            Smoothing::PlaneFit(fit) => MIN_FADING / (fit.iterations as f32).sqrt(),
+            _ => MIN_HALF_WIDTH,
         };
         Self {
             window_radii,
-            min_half_width: MIN_HALF_WIDTH / repeated.sqrt(),
+            min_half_width,
             range: range * radius,
             bound: bound * radius,
             flow_step,

@@ -134,13 +134,23 @@ fn both(a: Sums, b: Sums) -> Sums {
     );
 }
 
+// The weight of a tap by its distance. Towards the window's border it fades, or particles that enter
+// the window from pixel to pixel and frame to frame would shake the slope, for which taps count by
+// their distance.
+fn fading(window: Window, tap: i32) -> f32 {
+    let q = f32(tap) / (window.half_taps + 0.5);
+    return select(1.0, max(1.0 - q * q, 0.0), smoothing.window_radii > 0.0);
+}
+
 // The taps to one side.
 fn to_side(window: Window, axis: vec2<i32>, side: i32) -> Sums {
     var sums: Sums;
     for (var t = 1; t <= #{HALF_TAPS}; t += 1) {
-        let tap = tap_at(window, side * t * axis, edge_weight(window, t));
+        let tap = tap_at(window, side * t * axis, fading(window, t));
         let apart = (tap.value.xy - window.center.xy) * window.steepness;
-        add(&sums, f32(side * t), apart, tap.value.zw, tap.weight);
+        // Where there is nothing, it may be infinite.
+        let is_there = tap.weight > vec2(0.0);
+        add(&sums, f32(side * t), select(vec2(0.0), apart, is_there), tap.value.zw, tap.weight);
     }
     return sums;
 }
@@ -153,7 +163,7 @@ struct Fit {
     // Two taps do not smooth, but they do have a slope.
     sloped: vec2<bool>,
     good: vec2<bool>,
-    // Squared mean distance of the taps from it.
+    // Mean squared distance of the taps from it.
     error: vec2<f32>,
 }
 
@@ -171,15 +181,16 @@ fn fit(sums: Sums) -> Fit {
     );
 }
 
-// How well the taps lie on a line: 1 to 0.
+// How well the taps lie on a line: from 1 down.
 fn straight(fit: Fit, bend: f32) -> vec2<f32> {
     let part = 1.0 / (1.0 + fit.error / (bend * bend));
-    return part * part * part * part;
+    return max(part * part * part * part, vec2(1e-12));
 }
 
 // Mean distance of the taps from a line, over half the window's width, from which on there is a
 // crease; and how much more the fit to the whole window counts than one to a side if both are as
 // good. By measurement: below, bumps and curves are taken for creases, and half a window is noisier.
+// Where the range is wider (see `widen`), so is this: distances in depth are long at grazing angles.
 const CREASE: f32 = 0.1;
 const WHOLE: f32 = 100.0;
 
@@ -199,16 +210,16 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     // The centre has been read already.
     var center: Sums;
     add(&center, 0.0, vec2(0.0), window.center.zw, vec2<f32>(window.valid));
-    let left = both(center, to_side(window, axis, -1));
-    let right = to_side(window, axis, 1);
-    let before = fit(left);
-    let after = fit(both(center, right));
-    let whole = fit(both(left, right));
+    let to_left = to_side(window, axis, -1);
+    let to_right = to_side(window, axis, 1);
+    let before = fit(both(to_left, center));
+    let after = fit(both(center, to_right));
+    let whole = fit(both(both(to_left, center), to_right));
     let bend = CREASE * window.half_width / smoothing.range;
     let w0 = select(vec2(0.0), straight(before, bend), before.good);
     let w1 = select(vec2(0.0), straight(after, bend), after.good);
     let w = WHOLE * straight(whole, bend);
-    let scale = 1.0 / max(w0 + w1 + w, vec2(1e-30));
+    let scale = 1.0 / (w0 + w1 + w);
     let depth = scale * (w0 * before.depth + w1 * after.depth + w * whole.depth);
     let slope = scale * (w0 * before.slope + w1 * after.slope + w * whole.slope);
     let across = scale * (w0 * before.across + w1 * after.across + w * whole.across);

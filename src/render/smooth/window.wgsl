@@ -78,7 +78,8 @@ fn window_at(position: vec4<f32>) -> Window {
     let d = select(-out.center.y, out.center.x, out.valid.x);
     let scale = pixels_per_metre(view_from_device(out.ndc, d));
     let half_taps = f32(#{HALF_TAPS});
-    let half_width = max(smoothing.window_radii * surface.radius * scale, min(smoothing.min_half_width, half_taps));
+    let least = min(smoothing.min_half_width, half_taps);
+    let half_width = max(smoothing.window_radii * surface.radius * scale, least);
     let spacing = clamp(i32(ceil(half_width / half_taps)), 1, MAX_SPACING);
     let in_radii = smoothing.window_radii > 0.0;
     out.spacing = select(1, spacing, in_radii);
@@ -113,12 +114,11 @@ fn widen(window: ptr<function, Window>, slant: vec2<f32>) {
     (*window).steepness /= slack;
 }
 
-// The weight of a tap by its distance: it fades towards the window's border, or particles that enter
-// the window from pixel to pixel and frame to frame would shake the slope, whose taps count by their
-// distance.
+// How much of a tap lies in the window: the outermost ones fade, so that nothing pops when the
+// window grows by a pixel.
 fn edge_weight(window: Window, tap: i32) -> f32 {
-    let q = f32(tap) / (window.half_taps + 0.5);
-    return select(1.0, max(1.0 - q * q, 0.0), smoothing.window_radii > 0.0);
+    let faded = clamp(window.half_taps + 0.5 - f32(abs(tap)), 0.0, 1.0);
+    return select(1.0, faded, smoothing.window_radii > 0.0);
 }
 
 // A tap's values.

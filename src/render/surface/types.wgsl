@@ -16,7 +16,8 @@ struct GpuFluid {
     radius: f32,
 }
 
-// Appearance of a surface in a view. Lengths are in view units: metres times the camera's scale.
+// Appearance of a surface in a view, and how it is searched for. Lengths are in view units: metres
+// times the camera's scale.
 struct GpuSurface {
     // 1/m.
     extinction: vec3<f32>,

@@ -14,7 +14,7 @@ pub(crate) struct GpuFluid {
     pub(crate) radius: f32,
 }
 
-/// Appearance of a surface in a view, in view units.
+/// Appearance of a surface in a view, and how it is searched for, in view units.
 #[derive(Clone, Copy, Default, PartialEq, ShaderType)]
 pub(crate) struct GpuSurface {
     pub(crate) extinction: Vec3,
