@@ -5,7 +5,7 @@ use bevy::{math::DVec3, prelude::*};
 use bevy_fluid::{
     prelude::{ScreenSpaceFluid, SurfaceKernel},
     render::Layers,
-    settings::{Bilateral, PlaneFit, PlaneFitForm, Smoothing},
+    settings::{Bilateral, PlaneFit, PlaneFitForm, Smoothing, Window},
 };
 
 const FORMS: [PlaneFitForm; 3] = [
@@ -243,6 +243,30 @@ fn bumps_are_smoothed_away() {
             );
         }
     }
+}
+
+/// The second fit takes the slope from twice the window where the surface is flat; a wider window
+/// alone would take waves for bumps.
+#[test]
+fn a_flat_surface_is_smoothed_over_twice_the_window() {
+    let view = View::new(128, PARALLEL.lens);
+    let mut app = show(&view, RAW, |_| {});
+    pour(&mut app, bumpy_slab(0.05, Quat::IDENTITY));
+    let mut error = |iterations, window| {
+        let smoothing = Smoothing::PlaneFit(PlaneFit {
+            iterations,
+            window: Window::Radii(window),
+            ..PlaneFit::DEFAULT
+        });
+        look(&mut app, ScreenSpaceFluid { smoothing, ..RAW });
+        bumpiness(&view, &app, DVec3::Z).1
+    };
+    let [twice, once, wide] = [error(2, 1.7), error(1, 1.7), error(1, 3.4)];
+    println!("{twice}° {once}° {wide}°");
+    assert!(
+        twice < 0.45 * once && twice < wide,
+        "{twice}° {once}° {wide}°"
+    );
 }
 
 /// Errors of the normals of a block of liquid, by the face that they lie on. Unit: degrees.

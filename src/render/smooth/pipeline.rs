@@ -114,6 +114,7 @@ impl SpecializedRenderPipeline for SmoothPipeline {
             ("NORMALS", step.normals),
             ("FROM_SLOPES", step.from == Buffer::Slopes),
             ("TO_SLOPES", step.to == Buffer::Slopes),
+            ("WIDE", step.wide),
             ("WHOLE_WINDOW", step.kernel == SmoothKernel::DeviceDepth),
         ]);
         shader_defs.push(ShaderDefVal::Int("HALF_TAPS".into(), step.half_taps as i32));

@@ -4,7 +4,7 @@
 #import bevy_fluid::render::functions::{encode_normal, normal_from_slope}
 #import bevy_fluid::render::slopes::one_sided_slope
 #import bevy_fluid::render::smooth::window::{
-    Window, accept, edge_weight, slant, smoothing, tap_at, widen, window_at,
+    Tap, Window, accept, edge_weight, slant, smoothing, tap_at, widen, window_at,
 }
 
 struct Output {
@@ -134,25 +134,47 @@ fn both(a: Sums, b: Sums) -> Sums {
     );
 }
 
-// The weight of a tap by its distance. Towards the window's border it fades, or particles that enter
-// the window from pixel to pixel and frame to frame would shake the slope, for which taps count by
-// their distance.
-fn fading(window: Window, tap: i32) -> f32 {
-    let q = f32(tap) / (window.half_taps + 0.5);
+// The weight of a tap by its distance, in a window of half so many taps. Towards the window's border
+// it fades, or particles that enter the window from pixel to pixel and frame to frame would shake the
+// slope, for which taps count by their distance.
+fn fading(half_taps: f32, tap: i32) -> f32 {
+    let q = f32(tap) / (half_taps + 0.5);
     return select(1.0, max(1.0 - q * q, 0.0), smoothing.window_radii > 0.0);
 }
 
-// The taps to one side.
-fn to_side(window: Window, axis: vec2<i32>, side: i32) -> Sums {
-    var sums: Sums;
+// The taps to one side, and with those of a window twice as wide.
+struct Side {
+    inner: Sums,
+    wide: Sums,
+}
+
+// How far a tap's layers are from the centre's; 0 where there is nothing, as it may be infinite.
+fn relative(window: Window, tap: Tap) -> vec2<f32> {
+    let apart = (tap.value.xy - window.center.xy) * window.steepness;
+    return select(vec2(0.0), apart, tap.weight > vec2(0.0));
+}
+
+fn to_side(window: Window, axis: vec2<i32>, side: i32) -> Side {
+    var inner: Sums;
+    var wide: Sums;
     for (var t = 1; t <= #{HALF_TAPS}; t += 1) {
-        let tap = tap_at(window, side * t * axis, fading(window, t));
-        let apart = (tap.value.xy - window.center.xy) * window.steepness;
-        // Where there is nothing, it may be infinite.
-        let is_there = tap.weight > vec2(0.0);
-        add(&sums, f32(side * t), select(vec2(0.0), apart, is_there), tap.value.zw, tap.weight);
+        let tap = tap_at(window, side * t * axis, fading(window.half_taps, t));
+        let d = relative(window, tap);
+        add(&inner, f32(side * t), d, tap.value.zw, tap.weight);
+#ifdef WIDE
+        let flatter = fading(2.0 * window.half_taps, t) / max(fading(window.half_taps, t), 1e-3);
+        add(&wide, f32(side * t), d, tap.value.zw, flatter * tap.weight);
+#endif
     }
-    return sums;
+#ifdef WIDE
+    // Beyond, where the surface is smooth already, every other one.
+    let last = min(i32(window.half_taps + 0.5), #{HALF_TAPS});
+    for (var t = last + 2; t <= 2 * #{HALF_TAPS}; t += 2) {
+        let tap = tap_at(window, side * t * axis, 2.0 * fading(2.0 * window.half_taps, t));
+        add(&wide, f32(side * t), relative(window, tap), tap.value.zw, tap.weight);
+    }
+#endif
+    return Side(inner, wide);
 }
 
 struct Fit {
@@ -181,9 +203,9 @@ fn fit(sums: Sums) -> Fit {
     );
 }
 
-// How well the taps lie on a line: from 1 down.
-fn straight(fit: Fit, bend: f32) -> vec2<f32> {
-    let part = 1.0 / (1.0 + fit.error / (bend * bend));
+// How well taps at a mean squared distance from a line lie on it: from 1 down.
+fn straight(error: vec2<f32>, bend: f32) -> vec2<f32> {
+    let part = 1.0 / (1.0 + error / (bend * bend));
     return max(part * part * part * part, vec2(1e-12));
 }
 
@@ -193,6 +215,10 @@ fn straight(fit: Fit, bend: f32) -> vec2<f32> {
 // Where the range is wider (see `widen`), so is this: distances in depth are long at grazing angles.
 const CREASE: f32 = 0.1;
 const WHOLE: f32 = 100.0;
+// The same of a window twice as wide, from which a flat surface's slope is taken: no bump of a single
+// particle tilts it. By measurement: waves three times as long as it is wide keep theirs.
+const FLAT: f32 = 0.03;
+const WIDE: f32 = 2000.0;
 
 // Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it. Where the whole
 // window does not lie on a line but one half of it does, that half counts: a crease keeps its edge
@@ -212,17 +238,24 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     add(&center, 0.0, vec2(0.0), window.center.zw, vec2<f32>(window.valid));
     let to_left = to_side(window, axis, -1);
     let to_right = to_side(window, axis, 1);
-    let before = fit(both(to_left, center));
-    let after = fit(both(center, to_right));
-    let whole = fit(both(both(to_left, center), to_right));
-    let bend = CREASE * window.half_width / smoothing.range;
-    let w0 = select(vec2(0.0), straight(before, bend), before.good);
-    let w1 = select(vec2(0.0), straight(after, bend), after.good);
-    let w = WHOLE * straight(whole, bend);
-    let scale = 1.0 / (w0 + w1 + w);
-    let depth = scale * (w0 * before.depth + w1 * after.depth + w * whole.depth);
-    let slope = scale * (w0 * before.slope + w1 * after.slope + w * whole.slope);
-    let across = scale * (w0 * before.across + w1 * after.across + w * whole.across);
+    let before = fit(both(to_left.inner, center));
+    let after = fit(both(center, to_right.inner));
+    let whole = fit(both(both(to_left.inner, center), to_right.inner));
+    let half_width = window.half_width / smoothing.range;
+    let bend = CREASE * half_width;
+    let w0 = select(vec2(0.0), straight(before.error, bend), before.good);
+    let w1 = select(vec2(0.0), straight(after.error, bend), after.good);
+    let w = WHOLE * straight(whole.error, bend);
+    let total = w0 + w1 + w;
+    let depth = (w0 * before.depth + w1 * after.depth + w * whole.depth) / total;
+    var slope = (w0 * before.slope + w1 * after.slope + w * whole.slope) / total;
+    var across = (w0 * before.across + w1 * after.across + w * whole.across) / total;
+#ifdef WIDE
+    let wide = fit(both(both(to_left.wide, center), to_right.wide));
+    let w2 = select(vec2(0.0), WIDE * straight(wide.error, FLAT * half_width), wide.good);
+    slope = mix(slope, wide.slope, w2 / (total + w2));
+    across = mix(across, wide.across, w2 / (total + w2));
+#endif
     let to_device = 1.0 / window.steepness;
     let layers = accept(window, window.center.xy + depth * to_device, whole.good);
     var per_pixel = slope * to_device / f32(window.spacing);

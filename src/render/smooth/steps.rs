@@ -38,6 +38,8 @@ pub(crate) struct Step {
     pub(crate) to: Buffer,
     /// Whether it writes normals too.
     pub(crate) normals: bool,
+    /// Whether slopes are taken from a window twice as wide, where the surface is flat.
+    pub(crate) wide: bool,
     pub(crate) half_taps: u32,
 }
 
@@ -81,6 +83,10 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
         .map(|i| {
             let kernel = kernels[i % kernels.len()];
             let last = i + 1 == total;
+            // Lines once smoothed: bumps no longer hide where it is flat.
+            let wide = matches!(kernel, SmoothKernel::Rows | SmoothKernel::Columns)
+                && iterations > 1
+                && i + 2 >= total;
             // Rows pass on their slopes: to the last columns for the normals, to others as a texture that
             // is there anyway.
             let from = match to {
@@ -93,6 +99,7 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
                 from,
                 to,
                 normals: last && smoothing.yields_normals(),
+                wide,
                 half_taps,
             };
             to = from;
