@@ -13,6 +13,7 @@ mod methods;
 mod options;
 mod pictures;
 mod plots;
+pub mod reference;
 mod rig;
 mod scenes;
 mod searches;

@@ -21,12 +21,12 @@ use fluid_stage::scenery::sky_cubemap;
 /// Texels along a face of the sky: smooth as it is, between them it is off by less than 1e-4.
 const SKY_SIDE: usize = 256;
 /// Side of a square, m.
-const SQUARE: f64 = 0.35;
+pub(crate) const SQUARE: f64 = 0.35;
 /// Colours of the squares in sRGB bytes.
-const LIGHT: [u8; 3] = [226, 214, 190];
-const DARK: [u8; 3] = [66, 84, 122];
+pub(crate) const LIGHT: [u8; 3] = [226, 214, 190];
+pub(crate) const DARK: [u8; 3] = [66, 84, 122];
 /// How far floor and wall reach, m.
-const REACH: f64 = 8.0;
+pub(crate) const REACH: f64 = 8.0;
 
 /// Where floor and wall stand.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ pub(crate) fn sky(direction: DVec3) -> DVec3 {
 }
 
 /// From sRGB bytes.
-fn linear(bytes: [u8; 3]) -> DVec3 {
+pub(crate) fn linear(bytes: [u8; 3]) -> DVec3 {
     decode_srgb(DVec3::from(bytes.map(f64::from)) / 255.0)
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::{Crossing, Nearest, Surface};
+use super::{Crossing, Figure, Nearest, Surface};
 use crate::Ray;
 
 /// A box.
@@ -83,5 +83,9 @@ impl Surface for Cuboid {
             distance: outside + beyond.max_element().min(0.0),
             normal: self.turn * (DVec3::AXES[axis] * local[axis].signum()),
         })
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        vec![Figure::Cuboid(*self)]
     }
 }

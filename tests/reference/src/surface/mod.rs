@@ -1,6 +1,7 @@
 //! Surfaces of bodies, as rays meet them.
 
 mod cuboid;
+mod figure;
 mod half_space;
 mod pool;
 mod sphere;
@@ -11,6 +12,7 @@ use glam::DVec3;
 use crate::Ray;
 
 pub use cuboid::Cuboid;
+pub use figure::Figure;
 pub use half_space::HalfSpace;
 pub use pool::{RippledPool, Wave};
 pub use sphere::Sphere;
@@ -46,6 +48,11 @@ pub trait Surface: Send + Sync {
     /// so that offset and roughness can be told apart.
     fn nearest(&self, _point: DVec3) -> Option<Nearest> {
         None
+    }
+
+    /// The simple bodies that it is the union of, for other programs; none where it has another form.
+    fn figures(&self) -> Vec<Figure> {
+        Vec::new()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Crossing, Cuboid, Nearest, Surface, crossing};
+use super::{Crossing, Cuboid, Figure, Nearest, Surface, crossing};
 use crate::Ray;
 
 /// A standing sine wave.
@@ -176,6 +176,10 @@ impl Surface for RippledPool {
         } else {
             walls
         })
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        vec![Figure::Pool(self.clone())]
     }
 }
 

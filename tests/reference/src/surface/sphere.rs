@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Crossing, Nearest, Surface};
+use super::{Crossing, Figure, Nearest, Surface};
 use crate::Ray;
 
 /// A ball.
@@ -43,5 +43,9 @@ impl Surface for Sphere {
             distance: out.length() - self.radius,
             normal: out.normalize_or(DVec3::Y),
         })
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        vec![Figure::Sphere(*self)]
     }
 }

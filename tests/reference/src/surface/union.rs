@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Crossing, Nearest, Surface};
+use super::{Crossing, Figure, Nearest, Sphere, Surface};
 use crate::Ray;
 
 /// Bodies that merge where they overlap: only the outermost surface is left.
@@ -29,6 +29,23 @@ impl Surface for Union {
     fn nearest(&self, point: DVec3) -> Option<Nearest> {
         let known = self.0.iter().filter_map(|body| body.nearest(point));
         known.min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Of all bodies but balls that lie in another one.
+    fn figures(&self) -> Vec<Figure> {
+        let is_hidden = |figure: &Figure| match figure {
+            Figure::Sphere(Sphere { center, radius }) => {
+                let holds = |body: &dyn Surface| {
+                    let nearest = body.nearest(*center);
+                    nearest.is_some_and(|nearest| nearest.distance < -radius)
+                };
+                // Of itself, it is one radius below the surface, and no more.
+                self.0.iter().any(|body| holds(&**body))
+            }
+            _ => false,
+        };
+        let figures = self.0.iter().flat_map(|body| body.figures());
+        figures.filter(|figure| !is_hidden(figure)).collect()
     }
 }
 

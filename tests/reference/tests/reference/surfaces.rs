@@ -3,7 +3,7 @@
 use crate::common::{Random, crossings};
 use fluid_reference::{
     Camera, Lens, Ray, Surface, layers, scene,
-    surface::{Cuboid, HalfSpace, RippledPool, Sphere, Union, Wave},
+    surface::{Cuboid, Figure, HalfSpace, RippledPool, Sphere, Union, Wave},
 };
 use glam::{DVec2, DVec3, UVec2, dvec3};
 
@@ -205,4 +205,38 @@ fn a_plane_is_met_from_both_sides() {
     let up = crossings(&floor, &Ray::new(dvec3(0.3, -2.0, 0.0), DVec3::Y));
     assert!(!up[0].entering && up[0].t == 2.0);
     assert!(crossings(&floor, &Ray::new(DVec3::Y, DVec3::X)).is_empty());
+}
+
+#[test]
+fn scenes_are_rebuilt_from_their_figures() {
+    for scene in scene::all(0.05) {
+        let figures = scene.surface.figures();
+        let rebuilt = Union(
+            figures
+                .iter()
+                .map(|figure| match figure.clone() {
+                    Figure::Sphere(ball) => Box::new(ball) as Box<dyn Surface>,
+                    Figure::Cuboid(cuboid) => Box::new(cuboid),
+                    Figure::Pool(pool) => Box::new(pool),
+                })
+                .collect(),
+        );
+        // Of its seven droplets one is in the pool.
+        let wanted = match scene.name {
+            "pool and droplets" => 7,
+            "two spheres" | "depth step" => 2,
+            _ => 1,
+        };
+        assert_eq!(figures.len(), wanted, "{}", scene.name);
+        let mut random = Random(4);
+        for _ in 0..300 {
+            let ray = random.ray();
+            assert_eq!(
+                crossings(&*scene.surface, &ray),
+                crossings(&rebuilt, &ray),
+                "{}",
+                scene.name
+            );
+        }
+    }
 }
