@@ -109,7 +109,7 @@ fn every_source_of_normals_is_made() {
     assert_variants::<AveragePipeline>([None].into_iter().chain((1..=8).map(Some)).collect());
 }
 
-/// Every kind of smoothing with every number of taps; twice over, for the last pass may differ.
+/// Every kind of smoothing with every number of taps; twice over, for the last pass may differ, and once.
 fn smoothings() -> impl Iterator<Item = Smoothing> {
     (1..=8).flat_map(|half_taps| {
         let fit = |form| {
@@ -124,6 +124,11 @@ fn smoothings() -> impl Iterator<Item = Smoothing> {
             fit(PlaneFitForm::TotalLeastSquares),
             fit(PlaneFitForm::DeviceDepth),
             fit(PlaneFitForm::Separable),
+            Smoothing::PlaneFit(PlaneFit {
+                half_taps,
+                iterations: 1,
+                ..default()
+            }),
             Smoothing::Bilateral(Bilateral {
                 half_taps,
                 iterations: 2,

@@ -18,7 +18,8 @@ pub struct PlaneFit {
     #[reflect(@SettingRange::new(1.0, 8.0).unit("times"))]
     pub iterations: u32,
     /// How large the window is. Default 1.7 radii. Larger: smoother, less detail. Where the surface is
-    /// flat, the last of several separable fits takes the slope from a window twice as large.
+    /// flat, the last of several separable fits with two or more taps takes the slope from a window twice
+    /// as large.
     pub window: Window,
     /// Depth difference at which a tap has the weight exp(-1). Unit: particle radii, range 0.5..=4,
     /// default 2. Higher: smoother, but surfaces at different depths begin to blend. With a window in

@@ -9,8 +9,8 @@ use super::{
 
 impl ScreenSpaceFluid {
     /// The method of Imai's thesis (2016): total least squares 9×9 × 3, secant search, Schlick. Use
-    /// it with [`SurfaceKernel::THESIS`](crate::shape::SurfaceKernel::THESIS). Time 2.0 (box) and 2.1
-    /// (ball) of the default's; FLIP 0.56 and 0.43.
+    /// it with [`SurfaceKernel::THESIS`](crate::shape::SurfaceKernel::THESIS). Time 1.6 of the
+    /// default's; FLIP 0.55 (box) and 0.44 (ball).
     pub const THESIS: Self = Self {
         smoothing: Smoothing::PlaneFit(PlaneFit::THESIS),
         refractions: Refractions::Four,
@@ -22,7 +22,7 @@ impl ScreenSpaceFluid {
 
     /// The thesis's earlier method: bilateral 7×7 × 22, two refractions, secant, Schlick. Use it
     /// with [`SurfaceKernel::EARLIER`](crate::shape::SurfaceKernel::EARLIER): spheres of one class. Time
-    /// 3.4 (box) and 4.6 (ball) of the default's; FLIP 0.55 and 0.39.
+    /// 2.7 (box) and 3.4 (ball) of the default's; FLIP 0.55 and 0.39.
     pub const EARLIER: Self = Self {
         smoothing: Smoothing::Bilateral(Bilateral::THESIS),
         refractions: Refractions::Two,

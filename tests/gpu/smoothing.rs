@@ -245,8 +245,8 @@ fn bumps_are_smoothed_away() {
     }
 }
 
-/// The second fit takes the slope from twice the window where the surface is flat; a wider window
-/// alone would take waves for bumps.
+/// The second fit takes the slope from twice the window where the surface is flat. That is better than
+/// one fit to twice the window, too.
 #[test]
 fn a_flat_surface_is_smoothed_over_twice_the_window() {
     let view = View::new(128, PARALLEL.lens);

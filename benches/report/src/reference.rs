@@ -2,7 +2,7 @@
 
 use std::{f64::consts::PI, fs};
 
-use bevy::math::{DVec3, dvec3, uvec2};
+use bevy::math::{DVec3, UVec2, dvec3, uvec2};
 use fluid_reference::{
     Image,
     metrics::{PIXELS_PER_DEGREE, encode_srgb, flip, mean},
@@ -29,11 +29,12 @@ const RAYS: u32 = 16;
 const INTERFACES: u32 = 32;
 /// Rows of the map of the sky.
 const SKY_ROWS: u32 = 1024;
+const SIZE: UVec2 = uvec2(160, 120);
 
 /// Writes a folder of `NAME.json`, a scene's figures in m, and `NAME.f32`, its picture: rows from the
 /// top, RGB, linear, little-endian. `NAME.model.f32` is the picture of the renderer's model, four
-/// interfaces that reflect the sky alone, and its FLIP error is among the figures. `sky.f32` is the sky by longitude (from −z over +x, twice as many
-/// as latitudes) and latitude (from +y).
+/// interfaces that reflect the sky alone, and its FLIP error is among the figures. `sky.f32` is the sky
+/// by longitude (from −z over +x, twice as many as latitudes) and latitude (from +y).
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -60,7 +61,7 @@ pub fn export(options: &Options) -> Result<(), ReportError> {
         if !options.wants_scene(&name) {
             continue;
         }
-        let camera = scene.camera(uvec2(160, 120));
+        let camera = scene.camera(SIZE);
         let objects = AROUND.objects();
         let world = World {
             surface: &*scene.surface,
@@ -75,7 +76,7 @@ pub fn export(options: &Options) -> Result<(), ReportError> {
         let [truth, model] = [truth, model].map(|tracer| tracer.render(&camera, RAYS));
         write(options, &format!("{name}.f32"), &floats(&truth))?;
         write(options, &format!("{name}.model.f32"), &floats(&model))?;
-        let flip = mean_flip(&truth, &model)?;
+        let flip = mean_flip(scene.name, &truth, &model)?;
         let figures = format!("{:#}\n", figures(&scene, flip));
         write(options, &format!("{name}.json"), figures.as_bytes())?;
     }
@@ -83,13 +84,13 @@ pub fn export(options: &Options) -> Result<(), ReportError> {
 }
 
 /// How far one linear picture is from another, perceptually.
-fn mean_flip(truth: &Image<DVec3>, other: &Image<DVec3>) -> Result<f64, ReportError> {
+fn mean_flip(scene: &str, truth: &Image<DVec3>, other: &Image<DVec3>) -> Result<f64, ReportError> {
     let [truth, other] = [truth, other].map(|picture| picture.map(|color| encode_srgb(*color)));
     let map = flip(&truth, &other, PIXELS_PER_DEGREE);
     map.and_then(|map| mean("FLIP", &map, None))
         .map_err(|source| ReportError::Metric {
-            scene: "reference".into(),
-            method: "FLIP".into(),
+            scene: scene.into(),
+            method: "the renderer's model".into(),
             source,
         })
 }
@@ -98,7 +99,7 @@ fn figures(scene: &Scene, flip_of_model: f64) -> Value {
     let colors = [LIGHT, DARK].map(|color| linear(color).to_array());
     let bodies: Vec<_> = scene.surface.figures().iter().map(body).collect();
     json!({
-        "size": [160, 120],
+        "size": SIZE.to_array(),
         "eye": scene.eye.to_array(),
         "target": scene.target.to_array(),
         "vertical_degrees": 40.0,

@@ -10,7 +10,7 @@
 const RAYS: u32 = #{RAYS}u;
 // Mean contrast to the four neighbours, as perceived (square root of light), from which on more rays
 // are traced, and at which they count in full. By measurement: from 0.09 on, a splash is a quarter
-// sharper than the mean of 64 pictures through other places of each pixel; from 0.03 on, duller.
+// sharper than the mean of 64 pictures through other places of each pixel; from 0.03 on, softer.
 const PARTED: vec2<f32> = vec2(0.05, 0.1);
 // The neighbours' share of the mean among pixels of one surface, the smaller the more rays there are;
 // and where half of them see other surfaces or none, of which no ray through the pixel knows. By measurement:
@@ -87,5 +87,7 @@ fn resolved(pixel: vec2<i32>, own: vec4<f32>, rays: vec4<f32>) -> vec4<f32> {
         }
     }
     let share = mix(NEIGHBORS.x, NEIGHBORS.y, others) * max(parted, others);
-    return mix(mix(own, rays, parted), sum / total, share);
+    // Rays are there only where it parts.
+    let mean = select(own, mix(own, rays, parted), parted > 0.0);
+    return mix(mean, sum / total, share);
 }

@@ -165,6 +165,8 @@ impl Stage for SmoothPipeline {
         let mut steps = steps(&variant.plan.smoothing);
         for step in &mut steps {
             step.normals &= !variant.plan.index_one;
+            // No slope is needed.
+            step.wide &= !variant.plan.index_one;
         }
         steps
     }

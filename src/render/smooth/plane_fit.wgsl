@@ -134,7 +134,7 @@ fn both(a: Sums, b: Sums) -> Sums {
     );
 }
 
-// The weight of a tap by its distance, in a window of half so many taps. Towards the window's border
+// The weight of a tap by its distance, in a window of `half_taps` to each side. Towards the window's border
 // it fades, or particles that enter the window from pixel to pixel and frame to frame would shake the
 // slope, for which taps count by their distance.
 fn fading(half_taps: f32, tap: i32) -> f32 {
@@ -142,7 +142,7 @@ fn fading(half_taps: f32, tap: i32) -> f32 {
     return select(1.0, max(1.0 - q * q, 0.0), smoothing.window_radii > 0.0);
 }
 
-// The taps to one side, and with those of a window twice as wide.
+// Sums over the taps to one side, in the window and in one twice as wide.
 struct Side {
     inner: Sums,
     wide: Sums,
@@ -158,18 +158,21 @@ fn to_side(window: Window, axis: vec2<i32>, side: i32) -> Side {
     var inner: Sums;
     var wide: Sums;
     for (var t = 1; t <= #{HALF_TAPS}; t += 1) {
-        let tap = tap_at(window, side * t * axis, fading(window.half_taps, t));
-        let d = relative(window, tap);
-        add(&inner, f32(side * t), d, tap.value.zw, tap.weight);
+        let near = fading(window.half_taps, t);
 #ifdef WIDE
-        let flatter = fading(2.0 * window.half_taps, t) / max(fading(window.half_taps, t), 1e-3);
-        add(&wide, f32(side * t), d, tap.value.zw, flatter * tap.weight);
+        let far = fading(2.0 * window.half_taps, t);
+        let tap = tap_at(window, side * t * axis, far);
+        let d = relative(window, tap);
+        add(&inner, f32(side * t), d, tap.value.zw, near / max(far, 1e-3) * tap.weight);
+        add(&wide, f32(side * t), d, tap.value.zw, tap.weight);
+#else
+        let tap = tap_at(window, side * t * axis, near);
+        add(&inner, f32(side * t), relative(window, tap), tap.value.zw, tap.weight);
 #endif
     }
 #ifdef WIDE
     // Beyond, where the surface is smooth already, every other one.
-    let last = min(i32(window.half_taps + 0.5), #{HALF_TAPS});
-    for (var t = last + 2; t <= 2 * #{HALF_TAPS}; t += 2) {
+    for (var t = #{HALF_TAPS} + 2; t <= 2 * #{HALF_TAPS}; t += 2) {
         let tap = tap_at(window, side * t * axis, 2.0 * fading(2.0 * window.half_taps, t));
         add(&wide, f32(side * t), relative(window, tap), tap.value.zw, tap.weight);
     }
@@ -215,10 +218,10 @@ fn straight(error: vec2<f32>, bend: f32) -> vec2<f32> {
 // Where the range is wider (see `widen`), so is this: distances in depth are long at grazing angles.
 const CREASE: f32 = 0.1;
 const WHOLE: f32 = 100.0;
-// The same of a window twice as wide, from which a flat surface's slope is taken: no bump of a single
-// particle tilts it. By measurement: waves three times as long as it is wide keep theirs.
-const FLAT: f32 = 0.03;
-const WIDE: f32 = 2000.0;
+// The same two of a window twice as wide, from which a flat surface's slope is taken: no bump of a
+// single particle tilts it. By measurement: waves three times as long as the wide window keep theirs.
+const FLAT: f32 = 0.015;
+const WIDE_COUNTS: f32 = 2000.0;
 
 // Along rows (LINE = 0) or columns (1). Rows pass on their slope; columns average it. Where the whole
 // window does not lie on a line but one half of it does, that half counts: a crease keeps its edge
@@ -252,7 +255,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Output {
     var across = (w0 * before.across + w1 * after.across + w * whole.across) / total;
 #ifdef WIDE
     let wide = fit(both(both(to_left.wide, center), to_right.wide));
-    let w2 = select(vec2(0.0), WIDE * straight(wide.error, FLAT * half_width), wide.good);
+    let w2 = select(vec2(0.0), WIDE_COUNTS * straight(wide.error, 2.0 * FLAT * half_width), wide.good);
     slope = mix(slope, wide.slope, w2 / (total + w2));
     across = mix(across, wide.across, w2 / (total + w2));
 #endif

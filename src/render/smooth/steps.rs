@@ -83,9 +83,10 @@ pub(crate) fn steps(smoothing: &Smoothing) -> Vec<Step> {
         .map(|i| {
             let kernel = kernels[i % kernels.len()];
             let last = i + 1 == total;
-            // Lines once smoothed: bumps no longer hide where it is flat.
+            // Only once a fit has removed the bumps can it be told where the surface is flat.
             let wide = matches!(kernel, SmoothKernel::Rows | SmoothKernel::Columns)
                 && iterations > 1
+                && half_taps > 1
                 && i + 2 >= total;
             // Rows pass on their slopes: to the last columns for the normals, to others as a texture that
             // is there anyway.
@@ -141,6 +142,10 @@ mod tests {
             let steps = steps(&smoothing);
             assert_eq!(steps.len(), count);
             assert!(steps[count - 1].normals);
+            let wide: Vec<_> = steps.iter().map(|step| step.wide).collect();
+            let lines = form == PlaneFitForm::Separable;
+            assert!(wide[..count - 2].iter().all(|wide| !wide));
+            assert_eq!(wide[count - 2..], [lines, lines]);
             let slopes = steps.iter().filter(|step| step.to == Buffer::Slopes);
             let rows = if form == PlaneFitForm::Separable {
                 3

@@ -96,7 +96,7 @@ fn slant(window: Window, axis: vec2<i32>) -> vec2<f32> {
     if smoothing.window_radii <= 0.0 {
         return vec2(0.0);
     }
-    let reach = i32(0.5 * window.half_taps + 0.5);
+    let reach = max(i32(0.5 * window.half_taps + 0.5), 1);
     let ahead = raw_tap_at(window, reach * axis).xy;
     let behind = raw_tap_at(window, -reach * axis).xy;
     let rise = (ahead - window.center.xy) * window.steepness;

@@ -31,7 +31,7 @@ impl Surface for Union {
         known.min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Of all bodies but balls that lie in another one.
+    /// Of all bodies but balls that lie in another one; bodies that overlap stay as they are.
     fn figures(&self) -> Vec<Figure> {
         let is_hidden = |figure: &Figure| match figure {
             Figure::Sphere(Sphere { center, radius }) => {
@@ -44,7 +44,11 @@ impl Surface for Union {
             }
             _ => false,
         };
-        let figures = self.0.iter().flat_map(|body| body.figures());
+        let figures: Vec<_> = self.0.iter().map(|body| body.figures()).collect();
+        if figures.iter().any(Vec::is_empty) {
+            return Vec::new();
+        }
+        let figures = figures.into_iter().flatten();
         figures.filter(|figure| !is_hidden(figure)).collect()
     }
 }
