@@ -27,6 +27,10 @@ const SPREAD: [f32; 2] = [1e-4, 1e-3];
 /// 0.25 at it, for particles moved by up to 0.2 spacings from a lattice.
 const SURFACE: [f32; 2] = [0.05, 0.15];
 
+/// How far the splats at a sheet's rim move outwards, as a part of those at a body's surface: they are
+/// longer that way.
+const RIM_OFFSET: f32 = 0.57;
+
 /// Radius, in particle radii, of the sphere that represents an interior particle. It is visible
 /// only to an eye among the particles, where it marks the presence of liquid: it reaches over the
 /// gaps between particles (√3 on a lattice, more where they are moved), but not to the surface,
@@ -143,7 +147,7 @@ impl Splatting<'_> {
 
     fn bulk_weight(&self, sorted: usize) -> f32 {
         bulk_weight(
-            self.neighborhoods[sorted].count,
+            self.neighborhoods[sorted].crowd(),
             self.kernel.spray_threshold,
         )
     }
@@ -159,16 +163,19 @@ impl Splatting<'_> {
         };
         let covariance = array::from_fn(|entry| lanes(&|n| n.covariance[entry]));
         let blend = self.blend(
-            lanes(&|n| n.count),
+            lanes(&Neighborhood::crowd),
             covariance[0] + covariance[3] + covariance[5],
         );
-        let (axes, scale) = self.axes(covariance, blend);
+        let flatness = lanes(&Neighborhood::flatness);
+        let (axes, scale) = self.axes(covariance, blend, flatness);
         let offset = self.kernel.surface_offset * self.radius;
         let distance = lanes(&|n| Vec3::from(n.mean).length());
         // Along the mean: inwards to it, and outwards again by a length that depends on where the
         // surface is, not on how the particle itself lies in it.
         let at_surface = smoothstep(SURFACE[0], SURFACE[1] - SURFACE[0], distance);
-        let outwards = f32x8::splat(offset) * at_surface / distance.fast_max(f32x8::splat(1e-6));
+        let offset =
+            f32x8::splat(offset) * (f32x8::ONE - flatness * f32x8::splat(1.0 - RIM_OFFSET));
+        let outwards = offset * at_surface / distance.fast_max(f32x8::splat(1e-6));
         let inwards = f32x8::splat(self.kernel.center_shift * self.reach());
         let shift = blend * (inwards - outwards);
 
@@ -218,7 +225,7 @@ impl Splatting<'_> {
     }
 
     /// Symmetric matrices with a largest eigenvalue of 1, and the largest semi-axis (m).
-    fn axes(&self, covariance: [f32x8; 6], blend: f32x8) -> ([f32x8; 6], f32x8) {
+    fn axes(&self, covariance: [f32x8; 6], blend: f32x8, flatness: f32x8) -> ([f32x8; 6], f32x8) {
         let Eigen { values, vectors } = eigen(covariance);
         let largest = values[0].fast_max(values[1]).fast_max(values[2]);
         let per_largest = f32x8::ONE / largest.fast_max(f32x8::splat(f32::MIN_POSITIVE));
@@ -228,16 +235,20 @@ impl Splatting<'_> {
             let clamped = (value * per_largest).fast_max(least);
             f32x8::ONE - blend + blend * clamped
         });
+        let [a, b, c] = semi_axes;
+        let growth = f32x8::splat(self.kernel.radius_scale - 1.0);
+        let radius = f32x8::splat(self.radius) * (f32x8::ONE + blend * growth);
+        let scale = radius / (a * b * c).cbrt();
+        // A sheet of one particle is as thick as it, however much its discs overlap.
+        let thickness = flatness * (f32x8::splat(self.radius) / scale).fast_min(f32x8::ONE);
+        let semi_axes = semi_axes.map(|length| length.fast_max(thickness));
         let mut axes = [f32x8::ZERO; 6];
         for (length, [x, y, z]) in semi_axes.into_iter().zip(vectors) {
             let [lx, ly, lz] = [length * x, length * y, length * z];
             let outer = [lx * x, lx * y, lx * z, ly * y, ly * z, lz * z];
             axes = array::from_fn(|entry| axes[entry] + outer[entry]);
         }
-        let [a, b, c] = semi_axes;
-        let growth = f32x8::splat(self.kernel.radius_scale - 1.0);
-        let radius = f32x8::splat(self.radius) * (f32x8::ONE + blend * growth);
-        (axes, radius / (a * b * c).cbrt())
+        (axes, scale)
     }
 
     fn reach(&self) -> f32 {

@@ -91,7 +91,7 @@ impl Classes {
             .zip(neighborhoods.par_chunks(CHUNK))
             .enumerate()
             .for_each(|(chunk, ((classes, counts), neighborhoods))| {
-                let weight = |n: &Neighborhood| bulk_weight(n.count, kernel.spray_threshold);
+                let weight = |n: &Neighborhood| bulk_weight(n.crowd(), kernel.spray_threshold);
                 for (class, neighborhood) in classes.iter_mut().zip(neighborhoods) {
                     let is_spray = weight(neighborhood) < 0.5;
                     *class = if is_spray { Class::Spray } else { Class::Bulk };

@@ -26,7 +26,8 @@ pub struct SurfaceKernel {
     /// between it is drawn as both, one of them smaller, so that it does not pop from one to the other.
     ///
     /// A neighbour at the distance d counts as min(1, 10 (1 − d/R)), R being `neighbor_radius`: whole up
-    /// to 0.9 R, in part over the outer tenth.
+    /// to 0.9 R, in part over the outer tenth. In a sheet of one particle neighbours count for more, as there
+    /// are none before and behind it: 5 at its rim are as many as 13.
     ///
     /// Unit: particles. Range: any; 0 makes every particle bulk. Default: 7.
     /// Higher: thin sheets and threads come apart into droplets.

@@ -13,7 +13,49 @@ pub(super) struct Neighborhood {
     pub(super) covariance: [f32; 6],
 }
 
+/// How much of a ball the neighbours fill, up to which they lie in a plane and from which they do not.
+/// Particles moved by up to 0.2 spacings from a square lattice reach 0.2; two such layers have 0.8,
+/// particles at the surface of a large body 0.9.
+const FILLED: [f32; 2] = [0.2, 0.6];
+
+/// How much of a disc they fill, up to which they lie on a line and from which they do not.
+const SPREAD_OUT: [f32; 2] = [0.2, 0.5];
+
+/// Trace of the covariance, in R², up to which neighbours are too close together to be a sheet, and from
+/// which they are not. A sheet at rest has 0.3, its corner 0.12.
+const APART: [f32; 2] = [0.02, 0.08];
+
+/// Neighbours of a sheet from which on each counts more than once, up to those of its rim. A sheet
+/// at rest has 8 to 12, its rim 5, a corner 3; a full ball has 28, the surface of a large body 17.
+const IN_SHEET: [f32; 2] = [2.0, 5.0];
+
+/// By how much each of them counts more: a rim is then as dense as a body.
+const SHEET_COUNTS: f32 = 2.7;
+
 impl Neighborhood {
+    /// Number of neighbours that class and shape go by: those of a sheet count more, as there are none
+    /// before and behind it.
+    pub(super) fn crowd(&self) -> f32 {
+        let [least, rim] = IN_SHEET;
+        let in_sheet = (self.count - least).clamp(0.0, rim - least);
+        self.count + SHEET_COUNTS * self.flatness() * in_sheet
+    }
+
+    /// How nearly the neighbours lie in a plane, and not on a line: 0 to 1.
+    pub(super) fn flatness(&self) -> f32 {
+        let [xx, xy, xz, yy, yz, zz] = self.covariance;
+        let trace = self.trace();
+        let minors = [yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy];
+        let determinant = xx * minors[0] - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+        let minors = minors.iter().sum::<f32>();
+        // 1 and 1 in a ball, 0 and 3/4 in a disc, and 0 on a line.
+        let filled = 3.0 * determinant * trace / (minors * minors).max(f32::MIN_POSITIVE);
+        let spread = 3.0 * minors / (trace * trace).max(f32::MIN_POSITIVE);
+        let within =
+            |[none, all]: [f32; 2], value: f32| ((value - none) / (all - none)).clamp(0.0, 1.0);
+        (1.0 - within(FILLED, filled)) * within(SPREAD_OUT, spread) * within(APART, trace)
+    }
+
     /// Sum of the covariance's eigenvalues.
     pub(super) fn trace(&self) -> f32 {
         self.covariance[0] + self.covariance[3] + self.covariance[5]

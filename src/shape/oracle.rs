@@ -26,6 +26,23 @@ pub(crate) fn count(positions: &[Vec3], of: usize, reach: f32) -> f64 {
     counted.sum()
 }
 
+/// How nearly neighbours of this covariance (in `reach`²) lie in a plane: 0 to 1.
+pub(crate) fn flatness(covariance: [f64; 6]) -> f64 {
+    let [a, b, c] = eigenvalues(covariance);
+    let within = |none: f64, all: f64, value: f64| ((value - none) / (all - none)).clamp(0.0, 1.0);
+    let (trace, minors) = (a + b + c, a * b + b * c + c * a);
+    let filled = 3.0 * a * b * c * trace / (minors * minors).max(1e-40);
+    let spread = 3.0 * minors / (trace * trace).max(1e-40);
+    within(0.6, 0.2, filled) * within(0.2, 0.5, spread) * within(0.02, 0.08, trace)
+}
+
+/// Neighbours that class and shape go by.
+pub(crate) fn crowd(positions: &[Vec3], of: usize, reach: f32) -> f64 {
+    let count = count(positions, of, reach);
+    let flatness = flatness(moments(positions, of, reach).1);
+    count + 2.7 * flatness * (count.clamp(2.0, 5.0) - 2.0)
+}
+
 /// The part of a particle that is bulk.
 pub(crate) fn bulk_weight(count: f64, threshold: u32) -> f64 {
     if threshold == 0 {

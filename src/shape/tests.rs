@@ -32,6 +32,10 @@ fn check(positions: &[Vec3], reach: f32) {
         let count = oracle::count(positions, particle, reach);
         let error = (f64::from(neighborhood.count) - count).abs();
         assert!(error < 1e-5 * (1.0 + count), "particle {particle}: {error}");
+        // Flatness divides differences of the covariance, which f32 rounds.
+        let error =
+            (f64::from(neighborhood.crowd()) - oracle::crowd(positions, particle, reach)).abs();
+        assert!(error < 2e-2, "particle {particle}: {error}");
         let (mean, covariance) = oracle::moments(positions, particle, reach);
         for (value, exact) in neighborhood.mean.into_iter().zip(mean) {
             assert!((f64::from(value) - exact).abs() < 2e-6, "{value} {exact}");

@@ -18,6 +18,7 @@ mod rain;
 mod random_cameras;
 mod refraction;
 mod relocation;
+mod sheets;
 mod small_particles;
 mod smoothing;
 mod textures;

@@ -11,7 +11,7 @@ use super::bounds::Bounds;
 use crate::{
     material::FluidMaterial,
     settings::Checked,
-    shape::Splat,
+    shape::{Splat, SurfaceKernel},
     source::particles::{FluidParticles, ShapedFluid},
 };
 
@@ -25,6 +25,8 @@ pub struct ExtractedFluid {
     pub(crate) visible: bool,
     /// Particle radius in world units.
     pub(crate) radius: f32,
+    /// Whether droplets have a class of their own, so that what is thin in the bulk is a sheet.
+    pub(crate) sheets: bool,
     /// Particle radius in the fluid's own units.
     pub(crate) local_radius: f32,
     pub(crate) bounds: Bounds,
@@ -55,6 +57,7 @@ pub(super) fn extract_fluids(
                 &GlobalTransform,
                 Option<&Checked<FluidMaterial>>,
                 &FluidParticles,
+                Option<&Checked<SurfaceKernel>>,
                 &InheritedVisibility,
                 Option<&RenderLayers>,
                 &mut ShapedFluid,
@@ -65,7 +68,7 @@ pub(super) fn extract_fluids(
     mut commands: Commands,
 ) {
     let state = state.get_or_insert_with(|| main.query());
-    for (entity, transform, material, particles, visibility, layers, mut shaped) in
+    for (entity, transform, material, particles, kernel, visibility, layers, mut shaped) in
         state.iter_mut(&mut main)
     {
         let mut new = None;
@@ -75,6 +78,7 @@ pub(super) fn extract_fluids(
             .unwrap_or_else(|| new.insert(ExtractedFluid::default()));
         fluid.transform = particles.world_from_particles(transform);
         fluid.material = material.map(|it| **it).unwrap_or_default();
+        fluid.sheets = kernel.is_none_or(|it| it.anisotropic && it.spray_threshold > 0);
         // Splats of where the particles were when they were seen last are not drawn.
         fluid.visible = visibility.get() && !shaped.is_stale();
         fluid.local_radius = particles.radius;

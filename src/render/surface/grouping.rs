@@ -21,6 +21,8 @@ pub(super) struct Member {
     pub(super) material: FluidMaterial,
     /// Particle radius in world units.
     pub(super) radius: f32,
+    /// Whether what is thin in its bulk is a sheet.
+    pub(super) sheets: bool,
     /// Around it, in the world.
     pub(super) bounds: Bounds,
     /// The first member of its group, by place.
@@ -32,12 +34,14 @@ impl Member {
         fluid: DrawnFluid,
         material: FluidMaterial,
         radius: f32,
+        sheets: bool,
         bounds: Bounds,
     ) -> Self {
         Self {
             fluid,
             material,
             radius,
+            sheets,
             bounds,
             group: 0,
         }
@@ -145,7 +149,7 @@ mod tests {
                 } else {
                     FluidMaterial::WATER
                 };
-                Member::new(fluid, material, 0.1, cube(Vec3::Z * z))
+                Member::new(fluid, material, 0.1, true, cube(Vec3::Z * z))
             })
             .collect();
         let mut groups = Vec::new();

@@ -16,6 +16,7 @@ use super::{
     grouping::{Group, Member, group},
     plan::{PlanInput, plan},
     reasons::{Reporter, ViewReport},
+    uniforms::SHEET,
     views::FluidView,
 };
 
@@ -182,6 +183,9 @@ pub(super) fn prepare_surfaces(
                 eye.view_scale,
                 camera.exposure,
             );
+            if members.iter().all(|it| it.sheets) {
+                uniform.sheet = SHEET * uniform.radius;
+            }
             if let Some(center) = behind.replace(bounds.center()) {
                 let center = eye.view_from_eye.transform_point3(center);
                 uniform.behind = center.extend(1.0);
@@ -320,7 +324,7 @@ impl Eye {
             partial: fluid.partial,
         };
         let bounds = fluid.bounds.transformed(&eye_from_local);
-        Member::new(drawn, fluid.material, fluid.radius, bounds)
+        Member::new(drawn, fluid.material, fluid.radius, fluid.sheets, bounds)
     }
 
     /// Nearest and farthest depth of a box.

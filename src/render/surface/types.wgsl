@@ -37,6 +37,8 @@ struct GpuSurface {
     coarse_samples: u32,
     // How far behind the liquid an opaque surface is wetted.
     contact: f32,
+    // Thickness of a sheet of one particle; 0: there are none, as droplets are of the bulk.
+    sheet: f32,
 }
 
 // Depth layers hold (device depth of the front, −device depth of the back), so that one `max` blend

@@ -27,7 +27,11 @@ pub(crate) struct GpuSurface {
     pub(crate) softness: f32,
     pub(crate) coarse_samples: u32,
     pub(crate) contact: f32,
+    pub(crate) sheet: f32,
 }
+
+/// Thickness of a sheet of one particle with its bumps, in radii.
+pub(super) const SHEET: f32 = 2.5;
 
 impl GpuSurface {
     /// A surface of particles of `radius` in the world, for a view whose metres are `view_scale`
@@ -58,6 +62,7 @@ impl GpuSurface {
                 Search::Bracketed { coarse_samples } => coarse_samples,
             },
             contact: settings.contact * radius,
+            sheet: 0.0,
         }
     }
 }

@@ -84,7 +84,9 @@ fn the_ratio_is_limited() {
             .splats
             .iter()
             .map(|s| semi_axes(s)[0] / semi_axes(s)[2]);
-        assert!(ratios.fold(0.0, f32::max) > 0.98 * max_ratio);
+        let largest = ratios.fold(0.0, f32::max);
+        // Sheets as thick as this are flattened by no more than their volume.
+        assert!(largest > 0.98 * max_ratio.min(4.0), "{largest}");
     }
 }
 

@@ -124,6 +124,35 @@ fn thin_sheets_and_cracks_have_no_interior() {
     }
 }
 
+#[test]
+fn a_sheet_of_one_particle_holds_together_up_to_its_rim() {
+    let size = 20;
+    for jitter in [0.0, 0.1] {
+        let sheet = &lattice(size, SPACING, jitter)[..size * size];
+        let splats = shape(sheet);
+        assert!(
+            splats.bulk as usize >= sheet.len() - 4,
+            "{} bulk",
+            splats.bulk
+        );
+        for splat in splats.by_class()[0] {
+            let along = (splat.matrix() * Vec3::Z).length();
+            assert!((0.9..1.4).contains(&(along / R)), "{} r thick", along / R);
+        }
+    }
+    // Three particles, and a thread, are no sheet.
+    for few in [
+        vec![Vec3::ZERO, Vec3::X * SPACING, Vec3::Y * SPACING],
+        thread(20),
+    ] {
+        assert_eq!(shape(&few).spray as usize, few.len());
+    }
+}
+
+fn thread(count: usize) -> Vec<Vec3> {
+    (0..count).map(|i| Vec3::Y * (i as f32 * SPACING)).collect()
+}
+
 /// The drawn splats of every particle: bulk and spray. What is not drawn has no size.
 fn drawn(splats: &FluidSplats, count: usize) -> Vec<[Splat; 2]> {
     let [bulk, _, spray] = splats.by_class();
@@ -156,7 +185,7 @@ fn a_droplet_that_approaches_a_pool_does_not_pop() {
     let frames: Vec<_> = frames.collect();
     let droplet = pool.len();
     let weights = frames.iter().map(|(positions, _)| {
-        let count = oracle::count(positions, droplet, 4.0 * R);
+        let count = oracle::crowd(positions, droplet, 4.0 * R);
         oracle::bulk_weight(count, 7)
     });
     let weights: Vec<_> = weights.collect();

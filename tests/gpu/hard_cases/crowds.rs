@@ -70,7 +70,7 @@ fn h37_particles_on_cell_boundaries_count_once() {
         let mut positions = lattice(5, side, 0.0);
         positions.extend(lattice(4, side, 0.0).iter().map(|p| p - Vec3::splat(side)));
         let neighbors: Vec<_> = (0..positions.len())
-            .map(|of| oracle::count(&positions, of, reach))
+            .map(|of| oracle::crowd(&positions, of, reach))
             .collect();
         for spray_threshold in [1, 2, 4, 6, 7, 8, 12, 19, 20, 27] {
             let kernel = SurfaceKernel {
