@@ -49,7 +49,7 @@ pub struct SurfaceKernel {
     #[reflect(@SettingRange::new(0.0, 1.0))]
     pub center_shift: f32,
 
-    /// How far the splats of particles at a surface move outwards again.
+    /// How far the splats of particles at a surface move outwards again; at a sheet's rim 0.57 of it.
     ///
     /// Unit: particle radii. Range: 0 to 4. Default: 1.15, which draws flat surfaces where the
     /// outermost particles' own surfaces end, so that liquid touches the walls beside it. 0 (Yu &
@@ -59,6 +59,8 @@ pub struct SurfaceKernel {
     pub surface_offset: f32,
 
     /// Largest ratio of an ellipsoid's longest axis to its shortest (`k_r` of Yu & Turk).
+    ///
+    /// A sheet of one particle stays as thick as its particles.
     ///
     /// Unit: none. Range: 1 to 16. Default: 4.
     /// Higher: flatter discs, which tile a surface better and stick out more at corners.
@@ -75,7 +77,8 @@ pub struct SurfaceKernel {
     #[reflect(@SettingRange::new(0.1, 10.0).unit("radii").logarithmic())]
     pub radius_scale: f32,
 
-    /// Number of neighbours up to which a splat is the unshifted sphere of radius r.
+    /// Number of neighbours, as `spray_threshold` counts them, up to which a splat is the unshifted sphere
+    /// of radius r.
     ///
     /// Unit: particles. Range: any up to `full_neighbors`. Default: 7, as `spray_threshold`, so that a
     /// particle's two splats are alike while it turns from bulk to spray.
@@ -83,7 +86,7 @@ pub struct SurfaceKernel {
     #[reflect(@SettingRange::new(0.0, 64.0).unit("particles").open())]
     pub sphere_neighbors: u32,
 
-    /// Number of neighbours from which a splat is fully anisotropic.
+    /// Number of neighbours, likewise, from which a splat is fully anisotropic.
     ///
     /// Unit: particles. Range: any from `sphere_neighbors`. Default: 13 (`N_ε` = 25 in the paper,
     /// for a wider R). Shape, shift and scale blend smoothly in between.
