@@ -143,7 +143,10 @@ const LEAN: vec2<f32> = vec2(0.4, 0.7);
 // own bumps and rounded edges, which would bend light as the faces of a prism. The thicker the liquid,
 // the less may they lean for that, or streams would be no lenses.
 fn sheet_normal(n: vec3<f32>, entry: vec3<f32>, thickness: f32) -> vec3<f32> {
-    let sheets = clamp(thickness / max(surface.sheet, 1e-30), 1.0, 1e4);
+    if surface.sheet <= 0.0 {
+        return n;
+    }
+    let sheets = max(thickness / surface.sheet, 1.0);
     let lean = (1.0 + dot(n, entry)) * sheets * sheets * sheets * sheets;
     return normalize(mix(-entry, n, smoothstep(LEAN.x, LEAN.y, lean)));
 }
