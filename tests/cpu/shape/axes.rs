@@ -75,7 +75,7 @@ fn splats_at_the_surface_move_outwards_by_the_offset() {
 fn the_ratio_is_limited() {
     let mut random = Random(4);
     let positions: Vec<_> = (0..3000)
-        .map(|_| random.point() * Vec3::new(1.0, 1.0, 0.02))
+        .map(|_| random.point() * Vec3::new(1.0, 0.01, 0.01))
         .collect();
     for max_ratio in [1.0, 2.0, 16.0] {
         // `check` holds every splat against it.
@@ -84,9 +84,7 @@ fn the_ratio_is_limited() {
             .splats
             .iter()
             .map(|s| semi_axes(s)[0] / semi_axes(s)[2]);
-        let largest = ratios.fold(0.0, f32::max);
-        // Sheets as thick as this are flattened by no more than their volume.
-        assert!(largest > 0.98 * max_ratio.min(4.0), "{largest}");
+        assert!(ratios.fold(0.0, f32::max) > 0.98 * max_ratio);
     }
 }
 

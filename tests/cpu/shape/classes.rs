@@ -140,17 +140,15 @@ fn a_sheet_of_one_particle_holds_together_up_to_its_rim() {
             assert!((0.9..1.4).contains(&(along / R)), "{} r thick", along / R);
         }
     }
-    // Three particles, and a thread, are no sheet.
-    for few in [
-        vec![Vec3::ZERO, Vec3::X * SPACING, Vec3::Y * SPACING],
-        thread(20),
-    ] {
-        assert_eq!(shape(&few).spray as usize, few.len());
-    }
-}
-
-fn thread(count: usize) -> Vec<Vec3> {
-    (0..count).map(|i| Vec3::Y * (i as f32 * SPACING)).collect()
+    let three = [Vec3::ZERO, Vec3::X * SPACING, Vec3::Y * SPACING];
+    assert_eq!(shape(&three).spray, 3);
+    // A thread with six neighbours, which a sheet's would be enough to be bulk.
+    let thread: Vec<_> = (0..20).map(|i| Vec3::Y * (i as f32 * R)).collect();
+    let kernel = SurfaceKernel {
+        spray_threshold: 12,
+        ..SurfaceKernel::DEFAULT
+    };
+    assert_eq!(shape_with(&thread, R, &kernel).spray, 20);
 }
 
 /// The drawn splats of every particle: bulk and spray. What is not drawn has no size.

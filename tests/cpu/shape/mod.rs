@@ -335,6 +335,8 @@ fn h10_a_sheet_is_tiled_by_discs() {
     // As thick as its particles, and not flatter than the kernel allows.
     assert!((a / b - 1.0).abs() < 2.0 * F16 && a / short <= 4.02);
     assert!((short / R - 1.0).abs() < 2.0 * F16, "{short}");
+    // As wide as the volume of (2r)³ makes a disc of the kernel's ratio.
+    assert!((a / R - 1.24 * 4.0_f32.cbrt()).abs() < 0.02, "{a}");
     let normal = tilt * Vec3::Z;
     assert!((middle.matrix() * normal).distance(normal * short) < 1e-2 * short);
 }
