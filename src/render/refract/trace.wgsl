@@ -143,18 +143,18 @@ const LEAN: vec2<f32> = vec2(0.4, 0.7);
 // own bumps and rounded edges, which would bend light as the faces of a prism. The thicker the liquid,
 // the less may they lean for that, or streams would be no lenses.
 fn sheet_normal(n: vec3<f32>, entry: vec3<f32>, thickness: f32) -> vec3<f32> {
-    if surface.sheet <= 0.0 {
-        return n;
-    }
-    let sheets = max(thickness / surface.sheet, 1.0);
+    // Not by a branch on the uniform: software drivers compile such shaders anew in each frame.
+    let sheets = select(
+        1e4, clamp(thickness / max(surface.sheet, 1e-30), 1.0, 1e4), surface.sheet > 0.0,
+    );
     let lean = (1.0 + dot(n, entry)) * sheets * sheets * sheets * sheets;
     return normalize(mix(-entry, n, smoothstep(LEAN.x, LEAN.y, lean)));
 }
 
-// Follows the path, which came in through a surface of the normal `entry` (0: it began inside), until
+// Follows the path, which came in through a surface of the normal `entry` unless it began inside, until
 // the budget is spent or nothing more is met. Every turn looks for one interface: the way out
 // of the liquid, or after that the way into the other class.
-fn trace(path: ptr<function, Path>, entry: vec3<f32>) {
+fn trace(path: ptr<function, Path>, entry: vec3<f32>, began_inside: bool) {
     var leaving = true;
     var both = false;
     var may_enter = BOTH_CLASSES;
@@ -172,7 +172,7 @@ fn trace(path: ptr<function, Path>, entry: vec3<f32>) {
         }
         let hit = (*path).position + found.t * (*path).direction;
         var n = layer_normal((*path).kind, found.side, pixel_of(hit));
-        if turn == 0u && (*path).kind == BULK && any(entry != vec3(0.0)) {
+        if turn == 0u && (*path).kind == BULK && !began_inside {
             n = sheet_normal(n, entry, found.t * abs(dot(entry, (*path).direction)));
         }
         let wetted = select(0.0, contact_along((*path).direction, n), leaving);
@@ -233,8 +233,8 @@ fn trace_from(at: vec2<f32>, first_kind: u32, front: f32, normal: vec3<f32>) -> 
     path.interfaces = 0u;
 #else
     var entered = true;
+    let n = facing(normal, ray.direction);
     if !starts_inside {
-        let n = facing(normal, ray.direction);
         path.radiance = highlights(ray.direction, n);
         entered = cross_interface(&path, n, true);
         if !entered {
@@ -255,7 +255,7 @@ fn trace_from(at: vec2<f32>, first_kind: u32, front: f32, normal: vec3<f32>) -> 
             advance(&path, straight);
         }
     } else if entered {
-        trace(&path, select(normal, vec3(0.0), starts_inside));
+        trace(&path, n, starts_inside);
     }
 #endif
     if path.direct && INTERFACES <= 1u {
