@@ -166,7 +166,7 @@ impl Splatting<'_> {
             lanes(&Neighborhood::crowd),
             covariance[0] + covariance[3] + covariance[5],
         );
-        let flatness = lanes(&Neighborhood::flatness);
+        let flatness = lanes(&|n| n.flatness);
         let (axes, scale) = self.axes(covariance, blend, flatness);
         let offset = self.kernel.surface_offset * self.radius;
         let distance = lanes(&|n| Vec3::from(n.mean).length());

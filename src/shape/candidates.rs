@@ -205,11 +205,11 @@ impl Candidates {
         let second = second.map(|sum| sum.reduce_add() * scale * per_reach);
         let [x, y, z] = mean;
         let product = [x * x, x * y, x * z, y * y, y * z, z * z];
-        Neighborhood {
-            count: (count.reduce_add() * self.multiplicity as f32 - 1.0).max(0.0),
+        Neighborhood::new(
+            (count.reduce_add() * self.multiplicity as f32 - 1.0).max(0.0),
             mean,
-            covariance: [0, 1, 2, 3, 4, 5].map(|entry| second[entry] - product[entry]),
-        }
+            [0, 1, 2, 3, 4, 5].map(|entry| second[entry] - product[entry]),
+        )
     }
 
     /// Candidates minus `position`, eight at a time.

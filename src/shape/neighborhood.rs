@@ -11,6 +11,8 @@ pub(super) struct Neighborhood {
     pub(super) mean: [f32; 3],
     /// Weighted covariance about the mean: xx, xy, xz, yy, yz, zz.
     pub(super) covariance: [f32; 6],
+    /// How nearly the neighbours lie in a plane, and not on a line: 0 to 1.
+    pub(super) flatness: f32,
 }
 
 /// How much of a ball the neighbours fill, up to which they lie in a plane and from which they do not.
@@ -33,27 +35,21 @@ const IN_SHEET: [f32; 2] = [2.0, 5.0];
 const SHEET_COUNTS: f32 = 2.7;
 
 impl Neighborhood {
+    pub(super) fn new(count: f32, mean: [f32; 3], covariance: [f32; 6]) -> Self {
+        Self {
+            count,
+            mean,
+            covariance,
+            flatness: flatness(covariance),
+        }
+    }
+
     /// Number of neighbours that class and shape go by: those of a sheet count more, as there are none
     /// before and behind it.
     pub(super) fn crowd(&self) -> f32 {
         let [least, rim] = IN_SHEET;
         let in_sheet = (self.count - least).clamp(0.0, rim - least);
-        self.count + SHEET_COUNTS * self.flatness() * in_sheet
-    }
-
-    /// How nearly the neighbours lie in a plane, and not on a line: 0 to 1.
-    pub(super) fn flatness(&self) -> f32 {
-        let [xx, xy, xz, yy, yz, zz] = self.covariance;
-        let trace = self.trace();
-        let minors = [yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy];
-        let determinant = xx * minors[0] - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-        let minors = minors.iter().sum::<f32>();
-        // 1 and 1 in a ball, 0 and 3/4 in a disc, and 0 on a line.
-        let filled = 3.0 * determinant * trace / (minors * minors).max(f32::MIN_POSITIVE);
-        let spread = 3.0 * minors / (trace * trace).max(f32::MIN_POSITIVE);
-        let within =
-            |[none, all]: [f32; 2], value: f32| ((value - none) / (all - none)).clamp(0.0, 1.0);
-        (1.0 - within(FILLED, filled)) * within(SPREAD_OUT, spread) * within(APART, trace)
+        self.count + SHEET_COUNTS * self.flatness * in_sheet
     }
 
     /// Sum of the covariance's eigenvalues.
@@ -71,4 +67,17 @@ impl Neighborhood {
         let rest = 2.0 * [xy, xz, yz].map(squared).iter().sum::<f32>();
         (diagonal + rest) / squared(self.trace()).max(f32::MIN_POSITIVE)
     }
+}
+
+fn flatness([xx, xy, xz, yy, yz, zz]: [f32; 6]) -> f32 {
+    let trace = xx + yy + zz;
+    let minors = [yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy];
+    let determinant = xx * minors[0] - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    let minors = minors.iter().sum::<f32>();
+    // 1 and 1 in a ball, 0 and 3/4 in a disc, and 0 on a line.
+    let filled = 3.0 * determinant * trace / (minors * minors).max(f32::MIN_POSITIVE);
+    let spread = 3.0 * minors / (trace * trace).max(f32::MIN_POSITIVE);
+    let within =
+        |[none, all]: [f32; 2], value: f32| ((value - none) / (all - none)).clamp(0.0, 1.0);
+    (1.0 - within(FILLED, filled)) * within(SPREAD_OUT, spread) * within(APART, trace)
 }

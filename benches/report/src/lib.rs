@@ -156,7 +156,7 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
         Measures::Times => (Vec::new(), methods::frames(true)),
         Measures::Windows => ([false, true].map(methods::table).concat(), Vec::new()),
         Measures::Thickness => (Vec::new(), methods::thicknesses()),
-        Measures::Edges => (Vec::new(), methods::frames(true)),
+        Measures::Edges => (Vec::new(), methods::antialiased()),
     };
     let (smoothings, frames) = (wanted(smoothings), wanted(frames));
     let mut rig = Rig::new(scene)?;
@@ -190,7 +190,7 @@ fn measure(table: &mut Table, scene: &Scene, options: &Options) -> Result<(), Re
     Ok(())
 }
 
-/// How a method antialiases: at rest, and for presets in motion too, where ten times as many
+/// How a method antialiases: at rest, and for a few in motion too, where ten times as many
 /// pictures are drawn.
 fn antialiasing(
     table: &mut Table,
@@ -200,7 +200,7 @@ fn antialiasing(
     options: &Options,
 ) -> Result<Aliasing, ReportError> {
     let is_default = method.name == methods::DEFAULT;
-    let moves = is_default || (!options.quick && methods::PRESETS.contains(&method.name));
+    let moves = is_default || (!options.quick && methods::IN_MOTION.contains(&method.name));
     let aliasing = aliasing::measure(scene, method, rig, options, moves && !options.still)?;
     if is_default {
         aliasing.draw(scene, method, options.pictures())?;
@@ -269,7 +269,7 @@ fn errors(
         rig.show(method)?;
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
         // Of the grids of parameters it would take too long.
-        if few.iter().any(|few| few.label() == method.label()) {
+        if method.is_among(&few) {
             antialiasing(table, scene, method, rig, options)?;
         }
         progress.inc(1);
@@ -291,7 +291,12 @@ fn errors(
             pictures::measure(table, subject, truth, &got)?;
         }
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
-        antialiasing(table, scene, method, rig, options)?;
+        if methods::antialiased()
+            .iter()
+            .any(|one| one.label() == method.label())
+        {
+            antialiasing(table, scene, method, rig, options)?;
+        }
         progress.inc(1);
     }
     pictures::ablate(table, scene, &picture, rig)?;

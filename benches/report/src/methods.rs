@@ -44,6 +44,10 @@ impl Method {
     pub(crate) fn label(&self) -> String {
         format!("{} {}", self.name, self.parameters)
     }
+
+    pub(crate) fn is_among(&self, methods: &[Self]) -> bool {
+        methods.iter().any(|method| method.label() == self.label())
+    }
 }
 
 pub(crate) const SEPARABLE: &str = "plane-fit-separable";
@@ -61,6 +65,12 @@ pub(crate) const THICKNESS: &str = "thickness";
 
 /// The frames that are presets.
 pub(crate) const PRESETS: [&str; 5] = [DEFAULT, "fast", "accurate", THESIS, EARLIER];
+
+/// Those whose antialiasing is measured in motion too.
+pub(crate) const IN_MOTION: [&str; 3] = [DEFAULT, "fast", THESIS];
+
+/// What the default's other ways to antialias are called.
+const ANTIALIASING: &str = "antialiasing";
 
 /// Whether a method of this name is a way to smooth, and not a whole frame.
 pub(crate) fn smooths(name: &str) -> bool {
@@ -256,7 +266,7 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
             antialiasing,
             ..default
         };
-        Method::new("antialiasing", parameters, settings)
+        Method::new(ANTIALIASING, parameters, settings)
     };
     let mut methods = vec![
         self::default(),
@@ -292,6 +302,13 @@ pub(crate) fn frames(quick: bool) -> Vec<Method> {
         };
         methods.push(Method::new("fresnel", "schlick", schlick));
     }
+    methods
+}
+
+/// The frames that differ in how they antialias.
+pub(crate) fn antialiased() -> Vec<Method> {
+    let mut methods = frames(true);
+    methods.retain(|method| method.name == ANTIALIASING || PRESETS.contains(&method.name));
     methods
 }
 

@@ -105,12 +105,13 @@ pub(crate) fn measure(
     };
     let wrong = |source| metric(subject, source);
 
-    rig.show(&unfiltered(method))?;
+    let plain = unfiltered(method);
+    rig.show(&plain)?;
     let keep = |what: &str| {
         let size = scene.camera.size;
         let name = format!(
             "{}_{}x{}_{what}.png",
-            maps::stem(scene, method),
+            maps::stem(scene, &plain),
             size.x,
             size.y
         );

@@ -12,7 +12,11 @@ use fluid_reference::{
 
 use image::{ImageBuffer, Rgba};
 
-use crate::{ReportError, methods::Method, rig::Rig};
+use crate::{
+    ReportError,
+    methods::{self, Method},
+    rig::Rig,
+};
 
 /// The mean of pictures that see other places of each pixel.
 pub(super) struct Supersampled {
@@ -27,15 +31,21 @@ pub(super) struct Supersampled {
     pub(super) coverage: Image<f64>,
 }
 
-/// A method without antialiasing of its own: what the pictures of a mean are drawn with.
+/// A method without antialiasing of its own: what the pictures of a mean are drawn with. It bears the
+/// default's name if it differs from the default in nothing else.
 pub(super) fn unfiltered(method: &Method) -> Method {
-    Method {
+    let without = |method: &Method| Method {
         settings: ScreenSpaceFluid {
             antialiasing: Antialiasing::None,
             ..method.settings
         },
         ..method.clone()
-    }
+    };
+    let [default, own] = [&methods::default(), method].map(without);
+    let as_default = own.settings == default.settings
+        && own.kernel == default.kernel
+        && own.material == default.material;
+    if as_default { default } else { own }
 }
 
 /// [`supersample`], or what it has left in a file of this name before.
