@@ -5,12 +5,10 @@
 
 use std::process::ExitCode;
 
-use fluid_report::{Options, reference};
+use fluid_report::reference;
 
 fn main() -> ExitCode {
     // Cargo starts benches in their package's folder: paths are meant from the repository's.
     let _ = std::env::set_current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
-    fluid_report::exit_code(
-        Options::parse_from(std::env::args_os()).and_then(|options| reference::export(&options)),
-    )
+    fluid_report::exit_code(reference::run(std::env::args_os()))
 }

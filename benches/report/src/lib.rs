@@ -88,8 +88,14 @@ pub fn run_apart(options: &Options) -> Result<(), ReportError> {
         return run(options);
     }
     let mut table = Table::default();
+    if options.resume {
+        table.read(&options.out)?;
+    }
     let folder = options.out.join("part");
     for name in names {
+        if table.scenes().contains(&name) {
+            continue;
+        }
         let failed = |reason: String| ReportError::Part {
             path: folder.clone(),
             reason,
@@ -118,10 +124,12 @@ pub fn run_apart(options: &Options) -> Result<(), ReportError> {
         table.read(&folder)?;
         table.write(&options.out)?;
     }
-    fs::remove_dir_all(&folder).map_err(|source| ReportError::Write {
-        path: folder,
-        source,
-    })?;
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(|source| ReportError::Write {
+            path: folder,
+            source,
+        })?;
+    }
     finish(&table, options)
 }
 

@@ -35,6 +35,9 @@ pub struct Options {
     /// A folder for the truths about antialiasing: those that are there are not drawn again
     #[arg(long, value_name = "DIR")]
     pub truths: Option<PathBuf>,
+    /// Go on with the table in the folder: scenes that are in it are not measured again
+    #[arg(long)]
+    pub resume: bool,
     /// Where the table, the plots and the summary go
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -58,6 +61,14 @@ impl Options {
     pub fn parse_from(
         words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
     ) -> Result<Self, ReportError> {
+        Self::parse_of(words, &scenes::names())
+    }
+
+    /// The same of a program with other scenes.
+    pub(crate) fn parse_of(
+        words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+        scenes: &[&str],
+    ) -> Result<Self, ReportError> {
         let options = Self::try_parse_from(words)?;
         let known = |asked: &[String], names: &[&str], what| {
             let stranger = asked.iter().find(|name| !names.contains(&name.as_str()));
@@ -69,7 +80,7 @@ impl Options {
                 })
             })
         };
-        known(&options.scene, &scenes::names(), "scene")?;
+        known(&options.scene, scenes, "scene")?;
         known(&options.method, &methods::names(), "method")?;
         options.make_folders()?;
         Ok(options)
