@@ -259,12 +259,14 @@ fn search(to: Target, origin: vec3<f32>, direction: vec3<f32>) -> Found {
         return Found(STATUS_INVALID, 0.0, start.side);
     }
     if to.both {
-        // On a surface by construction: take the first step on trust.
+        // On a surface by construction: take the first step on trust, and no line through the start,
+        // which is as near to the surface as a hit.
         let asked = clamp_to_view(pixel_from_ndc(track.start.xy));
         let depths = layer_depths(to.kind, asked, track.map);
         let deep = view_depth(track.map, depths.y) - view_depth(track.map, depths.x);
         guess = max(guess, select(0.0, deep, depths.x > 0.0));
         start.value = min(start.value, -in_device_depth(track, 0.01 * surface.radius, track.start.z));
+        start.known = false;
     } else if to.leaving && start.value >= -start.near {
         // Thinner than the tolerance.
         return Found(STATUS_HIT, 0.0, start.side);

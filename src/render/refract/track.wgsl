@@ -34,8 +34,10 @@ fn s_from_distance(track: Track, t: f32) -> f32 {
     return select(20.0 * t / track.w, t / w, w > 0.05 * track.w);
 }
 
+// Short of it as well: a point there has no place on screen.
 fn distance_from_s(track: Track, s: f32) -> f32 {
-    return s * track.w / (1.0 - s * track.w_along);
+    let to_eye = select(1e30, -0.999 * track.w / track.w_along, track.w_along < 0.0);
+    return min(s * track.w / (1.0 - s * track.w_along), to_eye);
 }
 
 fn device_at(track: Track, s: f32) -> vec3<f32> {

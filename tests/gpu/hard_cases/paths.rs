@@ -204,11 +204,12 @@ fn h29_at_the_critical_angle_no_root_is_taken_of_a_negative() {
 
 #[test]
 fn h30_endless_total_reflection_stops_at_the_budget() {
-    // In a sphere the angle is the same at every reflection.
+    // In a sphere the angle is the same at every reflection, and so is the length of all chords.
+    let center = DVec3::new(-0.7, 0.0, 0.0);
     let view = View::new(
         64,
         Lens::Perspective {
-            fov: 1.5,
+            fov: 2.4,
             near: 0.05,
         },
     );
@@ -229,13 +230,30 @@ fn h30_endless_total_reflection_stops_at_the_budget() {
         let exits = exits(&view, &app);
         assert_eq!(exits.len() as u32, view.size.element_product());
         let mut spent = 0;
-        for (pixel, _, exit) in exits {
+        let [mut seen, mut found] = [0, 0];
+        for (pixel, ray, exit) in exits {
             assert!(exit.interfaces <= refractions.count(), "{pixel}: {exit:?}");
             let first = exit.searches[0];
+            let middle = ray.direction.dot(center - ray.origin);
+            let half = (1.0 - (ray.at(middle) - center).length_squared()).sqrt();
+            let at = ray.at(middle + half);
+            let second = at + 2.0 * half * (ray.direction).reflect(at - center);
+            let [w, h] = view.half_extent_at(-second.z).to_array();
+            let on_screen = second.z < -0.2 && second.x.abs() < 0.9 * w && second.y.abs() < 0.9 * h;
+            if on_screen && exit.searches[..2] == [SearchStatus::TotalReflection; 2] {
+                seen += 1;
+                found += usize::from(exit.position.distance(second) < 0.1);
+            }
             let all = exit.interfaces == refractions.count();
             spent += usize::from(all && first == SearchStatus::TotalReflection);
         }
         assert!(spent > 1000, "{spent} rays spend all {refractions:?}");
+        if refractions == Refractions::Two {
+            assert!(
+                seen > 100 && 20 * found > 19 * seen,
+                "{found} of {seen} meet the sphere again where they should"
+            );
+        }
         assert_white(&view, &app);
     }
 }
