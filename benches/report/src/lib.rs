@@ -84,11 +84,11 @@ pub fn run(options: &Options) -> Result<(), ReportError> {
 /// As [`run`]; what fails in another process has said why by itself.
 pub fn run_apart(options: &Options) -> Result<(), ReportError> {
     let names = scenes::asked(options);
-    if names.len() < 2 || options.table_only {
+    if options.table_only || (names.len() < 2 && !options.resume) {
         return run(options);
     }
     let mut table = Table::default();
-    if options.resume {
+    if options.resume && Table::is_in(&options.out) {
         table.read(&options.out)?;
     }
     let folder = options.out.join("part");
@@ -287,6 +287,7 @@ fn errors(
     }
     let picture = TruePicture::of(scene, &truth, surfaces::named(&regions).to_vec());
     let model = TruePicture::of_model(scene, &picture);
+    let antialiased = methods::antialiased();
     for method in frames {
         rig.show(method)?;
         let got = rig.picture()?;
@@ -299,10 +300,7 @@ fn errors(
             pictures::measure(table, subject, truth, &got)?;
         }
         surfaces::measure(table, scene, &truth, &regions, method, rig)?;
-        if methods::antialiased()
-            .iter()
-            .any(|one| one.label() == method.label())
-        {
+        if method.is_among(&antialiased) {
             antialiasing(table, scene, method, rig, options)?;
         }
         progress.inc(1);

@@ -119,6 +119,11 @@ impl Table {
         methods
     }
 
+    /// Whether a table was written to a folder.
+    pub(crate) fn is_in(folder: &Path) -> bool {
+        folder.join(FILE).exists()
+    }
+
     /// Takes over the rows of a table that was written to a folder.
     pub(crate) fn read(&mut self, folder: &Path) -> Result<(), ReportError> {
         let path = folder.join(FILE);

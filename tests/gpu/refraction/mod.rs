@@ -201,6 +201,35 @@ fn a_prism_bends_rays_up_to_the_critical_angle() {
     }
 }
 
+/// A cube on its edge: light enters at 45°, is totally reflected by the face beside (at 58°), and leaves
+/// through the one opposite, square to how it came.
+#[test]
+fn after_a_total_reflection_the_next_face_is_found() {
+    let (size, radius) = (24, 0.025);
+    let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_4);
+    let cube: Vec<_> = (0..size * size * size)
+        .map(|i| {
+            let cell = uvec3(i % size, i / size % size, i / size / size).as_vec3();
+            let place = cell - 0.5 * (size as f32 - 1.0);
+            CENTER + turn * (2.0 * radius * place)
+        })
+        .collect();
+    let app = show(&PARALLEL, ScreenSpaceFluid::DEFAULT, |world| {
+        world.spawn(fluid(&cube, radius, SurfaceKernel::DEFAULT));
+    });
+    let exits = exits(&PARALLEL, &app).into_iter();
+    let reflected = exits.filter(|(.., exit)| exit.searches[0] == SearchStatus::TotalReflection);
+    let turned: Vec<_> = reflected
+        .map(|(_, ray, exit)| angle(exit.direction, ray.direction))
+        .collect();
+    let right = turned.iter().filter(|it| (*it - 90.0).abs() < 10.0).count();
+    assert!(
+        turned.len() > 1000 && 10 * right > 9 * turned.len(),
+        "{right} of {}",
+        turned.len()
+    );
+}
+
 #[test]
 fn a_sphere_turns_rays_twice() {
     for view in [PARALLEL, PERSPECTIVE] {
