@@ -30,6 +30,13 @@ const ALL: [Refractions; 4] = [
     Refractions::Four,
 ];
 
+fn traced(refractions: Refractions) -> ScreenSpaceFluid {
+    ScreenSpaceFluid {
+        refractions,
+        ..TRACED
+    }
+}
+
 fn clear(index: f32) -> FluidMaterial {
     FluidMaterial {
         refractive_index: index,
@@ -220,13 +227,7 @@ fn h30_endless_total_reflection_stops_at_the_budget() {
     app.world_mut().entity_mut(liquid).insert(clear(5.0));
     surround(&mut app, Color::WHITE);
     for refractions in [Refractions::Two, Refractions::Four] {
-        look(
-            &mut app,
-            ScreenSpaceFluid {
-                refractions,
-                ..TRACED
-            },
-        );
+        look(&mut app, traced(refractions));
         let exits = exits(&view, &app);
         assert_eq!(exits.len() as u32, view.size.element_product());
         let mut spent = 0;
@@ -277,13 +278,7 @@ fn h31_index_one_neither_bends_nor_reflects() {
                 &mut app,
                 (FluidParticles::new(vec![CENTER], 1.0), kernel, material),
             );
-            look(
-                &mut app,
-                ScreenSpaceFluid {
-                    refractions,
-                    ..TRACED
-                },
-            );
+            look(&mut app, traced(refractions));
             let [radiance, transmission] =
                 [Layers::radiance, Layers::transmission].map(|of| read(&app, of));
             for (pixel, ray, exit) in exits(&PARALLEL, &app) {
@@ -317,13 +312,7 @@ fn h32_a_bubble_reflects_totally_outside() {
     );
     surround(&mut app, Color::WHITE);
     for refractions in [Refractions::One, Refractions::Four] {
-        look(
-            &mut app,
-            ScreenSpaceFluid {
-                refractions,
-                ..TRACED
-            },
-        );
+        look(&mut app, traced(refractions));
         let [radiance, transmission] =
             [Layers::radiance, Layers::transmission].map(|of| read(&app, of));
         let [mut inside, mut outside] = [0; 2];
@@ -422,13 +411,7 @@ fn h34_paths_of_no_length_and_of_endless_length_are_finite() {
         pour(&mut app, plate(20.0, CENTER, Quat::IDENTITY));
         let disc = only::<FluidParticles>(&mut app);
         app.world_mut().entity_mut(disc).insert(ink);
-        look(
-            &mut app,
-            ScreenSpaceFluid {
-                refractions,
-                ..TRACED
-            },
-        );
+        look(&mut app, traced(refractions));
         let transmission = read(&app, Layers::transmission);
         let crossings = refractions.count().clamp(1, 2);
         let wanted = (1.0 - fresnel(0.0, 1.333)).powi(crossings as i32);

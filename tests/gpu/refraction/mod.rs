@@ -207,12 +207,9 @@ fn a_prism_bends_rays_up_to_the_critical_angle() {
 fn after_a_total_reflection_the_next_face_is_found() {
     let (size, radius) = (24, 0.025);
     let turn = Quat::from_rotation_y(std::f32::consts::FRAC_PI_4);
-    let cube: Vec<_> = (0..size * size * size)
-        .map(|i| {
-            let cell = uvec3(i % size, i / size % size, i / size / size).as_vec3();
-            let place = cell - 0.5 * (size as f32 - 1.0);
-            CENTER + turn * (2.0 * radius * place)
-        })
+    let cube: Vec<_> = lattice(size, 2.0 * radius, 0.0)
+        .into_iter()
+        .map(|p| CENTER + turn * (p - radius * (size as f32 - 1.0)))
         .collect();
     let app = show(&PARALLEL, ScreenSpaceFluid::DEFAULT, |world| {
         world.spawn(fluid(&cube, radius, SurfaceKernel::DEFAULT));
